@@ -1,0 +1,48 @@
+"""Lightest shimmy damper for a landing gear, proved stable at every speed of its envelope.
+
+>>> import damperopt
+>>> study = damperopt.load("configs/main_gear.yaml")
+>>> result = damperopt.optimise(study)
+>>> result.status
+'solved'
+"""
+
+from .certify import Certificate, certify
+from .config import json_schema, load, loads
+from .design import combinations, optimise, optimise_each, rank
+from .errors import CertificateError, ConfigError, DamperoptError, OutputError
+from .modes import ModeTable, track_modes
+from .problem import DesignProblem
+from .results import DesignResult, load_result
+from .specs import Study
+from .stability import LinearGear, critical_speeds, linear_gear, spectral_abscissa, worst_points
+from .verify import GridCheck, check_grid
+
+__all__ = [
+    "Certificate",
+    "CertificateError",
+    "ConfigError",
+    "DamperoptError",
+    "DesignProblem",
+    "DesignResult",
+    "GridCheck",
+    "LinearGear",
+    "ModeTable",
+    "OutputError",
+    "Study",
+    "certify",
+    "check_grid",
+    "combinations",
+    "critical_speeds",
+    "json_schema",
+    "linear_gear",
+    "load",
+    "load_result",
+    "loads",
+    "optimise",
+    "optimise_each",
+    "rank",
+    "spectral_abscissa",
+    "track_modes",
+    "worst_points",
+]

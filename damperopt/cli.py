@@ -1,0 +1,296 @@
+"""Command line: reads a study, calls the pipeline, shows and stores the answer; errors become exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from . import config, summary
+from .certify import certify
+from .design import combinations, optimise_each, rank
+from .errors import ConfigError, DamperoptError, OutputError
+from .materials import MATERIALS
+from .modes import ModeTable, track_modes
+from .output import run_folder, write_modes, write_ranking, write_run
+from .results import DesignResult, load_result
+from .specs import TOPOLOGIES, Study
+from .stability import critical_speeds, linear_gear, worst_points
+
+__all__ = ["app", "main"]
+
+INTERRUPTED = 130
+
+app = typer.Typer(
+    name="damperopt",
+    help="Lightest shimmy damper for a landing gear, proved stable at every speed of its envelope.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+out, err = Console(highlight=False), Console(stderr=True, highlight=False)
+
+ConfigArgument = Annotated[Path, typer.Argument(metavar="CONFIG", help="Study, a YAML file.")]
+OutputOption = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="DIR", help="New folder for the results. [default: runs/NAME-DATE]")
+]
+
+
+def main() -> None:
+    """Entry point of the command ``damperopt``."""
+    try:
+        app()
+    except DamperoptError as error:
+        err.print(str(error), markup=False, soft_wrap=True)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        err.print("interrupted; nothing was written")
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        out.print(f"damperopt {version('damperopt')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def optimise(
+    file: ConfigArgument,
+    topology: Annotated[str, typer.Option(help=f"{', '.join(TOPOLOGIES)}, a comma list of them, or all.")] = "",
+    material: Annotated[str, typer.Option(help="A material of the library, a comma list, or all.")] = "",
+    output: OutputOption = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes. [default: one per core]")] = None,
+    figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
+) -> None:
+    """Find the lightest damper that is stable with the margin over the whole envelope, and prove it.
+
+    Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
+    """
+    study = config.load(file)
+    topologies = _choices(topology, TOPOLOGIES, "--topology")
+    materials = _choices(material, tuple(MATERIALS), "--material")
+    studies = combinations(study, topologies, materials)
+    folder = run_folder(output, file.stem)
+
+    results: list[DesignResult] = []
+    interrupted = False
+    with _progress() as report:
+        try:
+            for result in optimise_each(studies, workers=workers or _cores(), progress=report, config_file=file):
+                results.append(result)
+        except KeyboardInterrupt:
+            if not results:
+                raise
+            interrupted = True
+
+    ordered = rank(results)
+    if len(studies) == 1:
+        summary.show_design(out, ordered[0])
+        write_run(folder, lambda place: _write_design(place, file, studies[0], ordered[0], figures))
+    else:
+        summary.show_ranking(out, ordered)
+        by_combination = {(s.damper.topology, s.material.name): s for s in studies}
+
+        def write(place: Path) -> None:
+            write_ranking(place / "ranking.csv", ordered)
+            for position, result in enumerate(ordered, 1):
+                own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
+                own.mkdir()
+                _write_design(own, file, by_combination[result.topology, result.material], result, figures and position == 1)
+
+        write_run(folder, write)
+    out.print(f"\nResults in {folder}", soft_wrap=True)
+    if interrupted:
+        err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
+        raise typer.Exit(INTERRUPTED)
+    codes = {result.exit_code for result in results}
+    raise typer.Exit(4 if 4 in codes else 0 if 0 in codes else 3)
+
+
+@app.command()
+def analyse(
+    file: ConfigArgument,
+    design: Annotated[
+        Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
+    ] = None,
+    speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table [m/s]. [default: envelope]")] = "",
+    output: OutputOption = None,
+) -> None:
+    """Modes over speed, critical speeds and the exact certificate of a given design."""
+    study = config.load(file)
+    values = None
+    if design is not None:
+        study, values = _with_design(study, load_result(design), file, design)
+    grid = _speed_grid(speeds, study)
+    folder = run_folder(output, f"{file.stem}-analysis")
+    gear = linear_gear(study, values)
+    tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
+    margin = study.requirements.stability_margin if study.requirements else 0.0
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    if values is None:
+        values = {name: getattr(study.design, name).start for name in _design_names(study)}
+    summary.show_analysis(
+        out,
+        study,
+        values,
+        critical=[c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)],
+        worst=worst_points(gear, study.envelope)[0],
+        certificates=[certify(study, values, level) for level in dict.fromkeys((0.0, margin))],
+    )
+
+    def write(place: Path) -> None:
+        write_modes(place / "modes.csv", tables)
+        _draw_modes(place, tables, margin)
+
+    write_run(folder, write)
+    out.print(f"\nResults in {folder}", soft_wrap=True)
+
+
+@app.command()
+def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Studies to check.")]) -> None:
+    """Check one study or more; exit code 2 and one message per problem if something is wrong."""
+    problems: list[str] = []
+    for file in files:
+        try:
+            study = config.load(file)
+        except ConfigError as error:
+            problems += error.problems
+        else:
+            out.print(f"{file}: valid ({study.name}, {study.damper.topology}, order {study.gear.order})", markup=False)
+    if problems:
+        raise ConfigError(problems)
+
+
+@app.command()
+def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("study.yaml")) -> None:
+    """Write a commented starter study."""
+    text = files("damperopt").joinpath("starter.yaml").read_text(encoding="utf-8")
+    try:
+        with open(path, "x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise OutputError(f"{path}: exists already; choose another name") from None
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another place") from error
+    out.print(f"{path} written; next: damperopt optimise {path}", soft_wrap=True, markup=False)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of a study, for editors."""
+    sys.stdout.write(json.dumps(config.json_schema(), indent=2) + "\n")
+
+
+def _write_design(place: Path, file: Path, study: Study, result: DesignResult, figures: bool) -> None:
+    (place / "result.json").write_text(result.to_json(), encoding="utf-8")
+    shutil.copyfile(file, place / "config.yaml")
+    if result.mass is None:
+        return
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    grid = np.unique(np.linspace(low, high, 400))
+    before, after = linear_gear(study), linear_gear(study, result.design)
+    tables = [track_modes(after, grid, load) for load in study.envelope.loads]
+    write_modes(place / "modes.csv", tables)
+    if not figures:
+        return
+    from . import plots  # matplotlib takes longer to import than a design takes to find
+    from .region import feasible_region
+
+    worst = result.stability
+    shown = min(tables, key=lambda table: abs(table.load - worst.load))
+    plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
+    plots.save(plots.mass_by_part(result), place, "mass")
+    plots.save(plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])), place, "region")
+
+
+def _draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
+    from . import plots
+
+    for table in tables:
+        suffix = "" if len(tables) == 1 else f"-{table.load / 1e3:g}kN"
+        plots.save(plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}")
+
+
+def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
+    """The study with the layout and material that the result was made for, and its design."""
+    if not result.design:
+        raise ConfigError(f"{source}:1: design: the result holds no design (status {result.status}); allowed: a solved result")
+    changes = {
+        "damper__topology": result.topology,
+        "damper__geometry": result.geometry,
+        "material": result.config["material"],
+    }
+    try:
+        return study.replace(**changes), result.design
+    except ValueError as error:
+        raise ConfigError(f"{file}: does not go with {source}: {error}") from None
+
+
+def _design_names(study: Study) -> tuple[str, ...]:
+    from .specs import DESIGN_VARIABLES
+
+    return DESIGN_VARIABLES[study.damper.topology]
+
+
+def _speed_grid(text: str, study: Study) -> np.ndarray:
+    if not text:
+        low, high = study.envelope.speed.min, study.envelope.speed.max
+        return np.unique(np.linspace(low, high, 400))
+    allowed = "MIN:MAX:STEP in m/s, 0 < MIN <= MAX, STEP > 0, at most 100000 speeds, such as 5:100:1"
+    try:
+        low, high, step = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}") from None
+    if not (0 < low <= high < np.inf and 0 < step < np.inf and (high - low) / step < 1e5):
+        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}")
+    count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
+    return low + step * np.arange(count)
+
+
+def _choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:
+    if text == "all":
+        return list(allowed)
+    chosen = [part.strip() for part in text.split(",") if part.strip()]
+    unknown = [part for part in chosen if part not in allowed]
+    if unknown:
+        raise ConfigError(f"{option}: '{unknown[0]}' is unknown; allowed: {', '.join(allowed)}, or all")
+    return list(dict.fromkeys(chosen))
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def _progress() -> Iterator:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=err, transient=True) as bar:
+        task = bar.add_task("starts", total=None)
+
+        def report(done: int, total: int, study: Study) -> None:
+            bar.update(task, completed=done, total=total, description=f"{study.damper.topology}, {study.material.name}")
+
+        yield report

@@ -1,0 +1,397 @@
+"""One study from start to end: solve from many starts, keep the best, prove and check it, explain it."""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict
+from datetime import UTC, datetime
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from .certify import certify
+from .diagnose import diagnose
+from .errors import ConfigError
+from .exchange import EnvelopeSolution, best_local
+from .multistart import StartOutcome, executor, run_starts, solver_for, starting_designs
+from .problem import ROD, DesignProblem
+from .results import (
+    UNITS,
+    CertificateResult,
+    ConstraintResult,
+    DesignResult,
+    LocalOptimum,
+    MassResult,
+    Provenance,
+    Relaxation,
+    StabilityResult,
+    StartResult,
+    Verification,
+)
+from .sensitivity import sensitivities
+from .solve import NlpSolver
+from .specs import TOPOLOGIES, Study
+from .stability import worst_points
+from .verify import check_grid
+
+__all__ = ["combinations", "optimise", "optimise_each", "rank"]
+
+SAME_MASS = 1e-4
+"""Starts whose masses agree to this relative difference are counted as one local optimum."""
+
+KKT_TOLERANCE = 1e-5
+"""Largest KKT residual that counts as optimal (kg per unit of a scaled variable, and scaled rows)."""
+
+Progress = Callable[[int, int], None]
+
+
+def optimise(
+    study: Study,
+    *,
+    workers: int = 1,
+    progress: Progress | None = None,
+    config_file: str | Path | None = None,
+    pool: Executor | None = None,
+) -> DesignResult:
+    """Lightest damper of a study, proved stable over its envelope.
+
+    Parameters
+    ----------
+    study : Study
+    workers : int
+        Processes for the starts; 1 keeps everything in this one.
+    progress : callable or None
+        Called with (done, total) after each start.
+    config_file : str, Path or None
+        Source of the study, for the provenance.
+    pool : Executor or None
+        A pool to share between calls, instead of `workers`.
+
+    Returns
+    -------
+    DesignResult
+        `status` says whether it is solved (and verified), infeasible or failed; nothing is raised for those.
+
+    Raises
+    ------
+    ConfigError
+        If the layout has no design variables (topology ``rotational``).
+    """
+    if study.damper.topology not in TOPOLOGIES:
+        raise ConfigError(
+            f"{config_file or study.name}: damper.topology: 'rotational' has no design variables to optimise; "
+            f"allowed: {', '.join(TOPOLOGIES)} (or use 'damperopt analyse')"
+        )
+    clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
+    if pool is None and workers > 1:
+        with executor(workers) as own:
+            outcomes = run_starts(study, own, progress)
+    else:
+        outcomes = run_starts(study, pool, progress)
+    solver = solver_for(study.model_dump_json())
+    result = _answer(study, solver, outcomes)
+    provenance = _provenance(study, config_file, started, time.perf_counter() - clock)
+    return result.model_copy(update={"provenance": provenance, "config": study.model_dump(mode="json")})
+
+
+def combinations(study: Study, topologies: Sequence[str], materials: Sequence[str]) -> list[Study]:
+    """The study with each layout and material, everything else equal.
+
+    Parameters
+    ----------
+    study : Study
+    topologies, materials : sequence of str
+        Empty: the study's own.
+
+    Returns
+    -------
+    list of Study
+
+    Raises
+    ------
+    ConfigError
+        If the study lacks what a combination needs.
+    """
+    variants = []
+    for topology in topologies or [study.damper.topology]:
+        for material in materials or [None]:
+            changes = {"damper__topology": topology} | ({"material": material} if material else {})
+            try:
+                variants.append(study.replace(**changes))
+            except ValidationError as error:
+                message = "; ".join(problem["msg"] for problem in error.errors())
+                raise ConfigError(f"{study.name}: with topology {topology}, material {material or 'as given'}: {message}") from None
+    return variants
+
+
+def optimise_each(
+    studies: Sequence[Study],
+    *,
+    workers: int = 1,
+    progress: Callable[[int, int, Study], None] | None = None,
+    config_file: str | Path | None = None,
+) -> Iterator[DesignResult]:
+    """Optimise several studies with one pool of processes; each result is yielded as soon as it is there.
+
+    Parameters
+    ----------
+    studies : sequence of Study
+    workers : int
+        Processes.
+    progress : callable or None
+        Called with (done, total, study) after each start.
+    config_file : str, Path or None
+        Source, for the provenance.
+
+    Yields
+    ------
+    DesignResult
+        In the order of the studies.
+    """
+    total, before = sum(study.solver.starts for study in studies), 0
+    with executor(workers) as pool:
+        for study in studies:
+
+            def report(done: int, _: int, study: Study = study, before: int = before) -> None:
+                if progress:
+                    progress(before + done, total, study)
+
+            yield optimise(study, progress=report, config_file=config_file, pool=pool)
+            before += study.solver.starts
+
+
+def rank(results: Iterable[DesignResult]) -> list[DesignResult]:
+    """The lightest first, those without a verified design last."""
+    return sorted(results, key=lambda r: (r.status != "solved", r.mass.total if r.mass else float("inf")))
+
+
+def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
+    problem = solver.problem
+    starts = tuple(_start_result(outcome.index, outcome.found) for outcome in outcomes)
+    solved = [outcome.found for outcome in outcomes if outcome.found.solved]
+    base = DesignResult(
+        status="failed",
+        message="",
+        study=study.name,
+        topology=study.damper.topology,
+        geometry=study.damper.geometry,
+        material=study.material.name,
+        stability_margin=study.requirements.stability_margin,
+        starts=starts,
+        local_optima=_local_optima(solved),
+    )
+    if not solved:
+        diagnosis = diagnose(solver, starting_designs(problem)[:4])
+        if diagnosis.infeasibility:
+            message = _infeasible_message(diagnosis.infeasibility.shortfalls, diagnosis.infeasibility.alone_enough)
+            return base.model_copy(
+                update={"status": "infeasible", "message": message, "infeasibility": diagnosis.infeasibility}
+            )
+        if diagnosis.feasible_design is None:
+            message = "no start converged, nor did the search for a relaxation; try other starts or bounds"
+            return base.model_copy(update={"message": message})
+        rescued = best_local(solver, diagnosis.feasible_design, _points_for(problem, diagnosis.feasible_design))
+        if not rescued.solved:
+            message = f"a design exists, but the solver stopped from every start ({rescued.solution.status}); raise solver.starts"
+            return base.model_copy(update={"message": message, "design": diagnosis.feasible_design})
+        solved = [rescued]
+    best = min(solved, key=lambda found: found.solution.objective)
+    return _checked(problem, best, solved, base)
+
+
+def _points_for(problem: DesignProblem, design: Mapping[str, float]) -> list[tuple[float, float]]:
+    return [(p.speed, p.load) for p in worst_points(problem.model.at(design), problem.study.envelope)]
+
+
+def _checked(
+    problem: DesignProblem, best: EnvelopeSolution, solved: list[EnvelopeSolution], base: DesignResult
+) -> DesignResult:
+    """Result of the best local optimum, with proof and verification."""
+    study, solution, worst = problem.study, best.solution, best.worst[0]
+    certificate = certify(study, solution.design)
+    grid = check_grid(study, solution.design)
+    agreeing = sum(s.solution.objective <= solution.objective * (1 + SAME_MASS) for s in solved)
+    passed = grid.passed and certificate.proved and solution.kkt_residual <= KKT_TOLERANCE
+    verification = Verification(
+        passed=passed,
+        grid_passed=grid.passed,
+        grid_speeds=grid.speeds,
+        grid_loads=grid.loads,
+        worst=StabilityResult(**asdict(grid.worst)),
+        kkt_residual=solution.kkt_residual,
+        agreeing_starts=agreeing,
+    )
+    failures = []
+    if not certificate.proved:
+        failures.append(f"the exact certificate does not hold: {certificate.reason}")
+    if not grid.passed:
+        failures.append(
+            f"an eigenvalue has the real part {grid.worst.abscissa:.6g} 1/s at {grid.worst.speed:.6g} m/s, "
+            f"{grid.worst.load / 1e3:.6g} kN"
+        )
+    if solution.kkt_residual > KKT_TOLERANCE:
+        failures.append(f"the KKT residual is {solution.kkt_residual:.2g}")
+    mass = problem.mass(solution.design)
+    message = "; ".join(failures) or f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
+    return base.model_copy(
+        update={
+            "status": "solved" if passed else "failed",
+            "message": message,
+            "design": solution.design,
+            "derived": {**problem.yaw_numbers(solution.design), ROD: problem.rod_diameter(solution.design)},
+            "mass": MassResult(total=mass, parts=problem.parts(solution.design)),
+            "stability": StabilityResult(**asdict(worst)),
+            "constraints": _constraints(problem, best),
+            "not_checked": _not_checked(study),
+            "certificate": CertificateResult(**asdict(certificate)),
+            "verification": verification,
+            "sensitivities": sensitivities(problem, solution),
+        }
+    )
+
+
+def _constraints(problem: DesignProblem, best: EnvelopeSolution) -> tuple[ConstraintResult, ...]:
+    study, solution, worst = problem.study, best.solution, best.worst[0]
+    margin = study.requirements.stability_margin
+    price = float(solution.data_gradient[problem.data_names.index("requirements.stability_margin")])
+    results = [
+        ConstraintResult(
+            name="stability_margin",
+            value=worst.abscissa,
+            limit=-margin,
+            sense="<=",
+            unit="1/s",
+            active=worst.abscissa > -margin - 10 * study.solver.margin_reserve,
+            multiplier=price,
+            shadow_price=-price,
+            relaxed_by=("requirements.stability_margin", "envelope.speed", "envelope.vertical_load"),
+        )
+    ]
+    values, rows = problem.values(solution.design), problem.rows(solution.design)
+    for constraint, multiplier in zip(problem.constraints, solution.row_multipliers, strict=True):
+        value, limit = values[constraint.name]
+        per_limit = multiplier / limit if constraint.ratio else multiplier
+        results.append(
+            ConstraintResult(
+                name=constraint.name,
+                value=value,
+                limit=limit,
+                sense=">=" if constraint.at_least else "<=",
+                unit=constraint.unit,
+                active=abs(rows[constraint.name]) < 1e-6,
+                multiplier=float(multiplier),
+                shadow_price=float(per_limit if constraint.at_least else -per_limit),
+                relaxed_by=constraint.relaxed_by,
+            )
+        )
+    return tuple(results) + _active_bounds(problem, best)
+
+
+def _active_bounds(problem: DesignProblem, best: EnvelopeSolution) -> tuple[ConstraintResult, ...]:
+    """Bounds of design variables that carry a multiplier (fixed variables: what fixing them costs)."""
+    found = []
+    for variable, multiplier in zip(problem.variables, best.solution.bound_multipliers, strict=True):
+        if variable.name == ROD or abs(multiplier) < 1e-6 * best.solution.objective:
+            continue
+        upper = multiplier > 0
+        limit = variable.upper if upper else variable.lower
+        slope = multiplier / limit if variable.logarithmic else multiplier
+        fixed = variable.lower == variable.upper
+        found.append(
+            ConstraintResult(
+                name=f"{variable.name}_{'fixed' if fixed else 'max' if upper else 'min'}",
+                value=best.solution.design[variable.name],
+                limit=limit,
+                sense="<=" if upper else ">=",
+                unit=UNITS[variable.name],
+                active=True,
+                multiplier=abs(float(multiplier)),
+                shadow_price=-float(slope),
+                relaxed_by=(f"design.{variable.name}",),
+            )
+        )
+    return tuple(found)
+
+
+def _not_checked(study: Study) -> tuple[str, ...]:
+    notes = ["decay of large disturbances on the nonlinear model", "damper compliance in series", "freeplay and end stops"]
+    if study.damper.topology != "boeing" and not study.material.has_fatigue_data:
+        notes.insert(0, f"fatigue of the bending arm: no Basquin data for {study.material.name}")
+    return tuple(notes)
+
+
+def _start_result(index: int, found: EnvelopeSolution) -> StartResult:
+    solution = found.solution
+    return StartResult(
+        index=index,
+        solved=found.solved,
+        status=solution.status,
+        mass=solution.objective if found.solved else None,
+        rounds=found.rounds,
+        form=solution.form,
+        design=solution.design,
+    )
+
+
+def _local_optima(solved: list[EnvelopeSolution]) -> tuple[LocalOptimum, ...]:
+    optima: list[LocalOptimum] = []
+    for found in sorted(solved, key=lambda found: found.solution.objective):
+        mass = found.solution.objective
+        if optima and mass <= optima[-1].mass * (1 + SAME_MASS):
+            optima[-1] = optima[-1].model_copy(update={"starts": optima[-1].starts + 1})
+        else:
+            optima.append(LocalOptimum(mass=mass, starts=1, design=found.solution.design))
+    return tuple(optima)
+
+
+def _infeasible_message(shortfalls: Sequence[Relaxation], alone: Sequence[Relaxation]) -> str:
+    missing = "; ".join(_short(r) for r in shortfalls)
+    text = f"no design meets the requirements. Least shortfall: {missing}."
+    if alone:
+        text += " Enough on its own: " + "; or ".join(_enough(r) for r in alone) + "."
+    return text
+
+
+def _short(r: Relaxation) -> str:
+    place = f" at {r.speed:.4g} m/s, {r.load / 1e3:.4g} kN" if r.speed is not None else ""
+    return f"{r.name} can reach {r.needed:.4g} {r.unit}{place}, required {r.limit:.4g} (short by {abs(r.limit - r.needed):.2g})"
+
+
+def _enough(r: Relaxation) -> str:
+    return f"{r.name} of {r.needed:.4g} {r.unit} instead of {r.limit:.4g} ({', '.join(r.inputs)})"
+
+
+def _provenance(study: Study, config_file: str | Path | None, started: str, wall_time: float) -> Provenance:
+    packages = {}
+    for name in ("casadi", "numpy", "scipy", "python-flint", "pydantic"):
+        packages[name] = version(name)
+    try:
+        own = version("damperopt")
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        own = "unknown"
+    text = Path(config_file).read_bytes() if config_file and Path(config_file).is_file() else study.model_dump_json().encode()
+    return Provenance(
+        damperopt=own,
+        python=platform.python_version(),
+        packages=packages,
+        config_file=str(config_file) if config_file else None,
+        config_sha256=sha256(text).hexdigest(),
+        git_commit=_git_commit(Path(config_file).parent if config_file else Path.cwd()),
+        seed=study.solver.seed,
+        started=started,
+        wall_time=wall_time,
+    )
+
+
+def _git_commit(folder: Path) -> str | None:
+    try:
+        run = subprocess.run(["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, timeout=5)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return run.stdout.strip() if run.returncode == 0 else None

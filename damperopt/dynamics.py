@@ -1,0 +1,92 @@
+"""Landing gear, tyre and damper as one differential-algebraic system.
+
+Axes and signs. z up the strut axis, x aft, y lateral. Yaw psi is the rotation of the piston about the strut axis;
+the caster (mechanical trail) e is positive when the contact point lies behind the axis; a positive string deflection y
+comes from positive yaw at speed. A positive side force F_y and a positive aligning moment M_z turn the wheel back to
+psi = 0, so both enter the yaw equation with a minus sign, as does the tread-width moment kappa psi'/V. The lateral
+bending angle delta moves the wheel by l_g sin(delta). Source: Thota, Krauskopf & Lowenberg (2009); thesis (2-14),
+(3-3), (3-4), with the sign errata of the theory page.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+
+from .dae import DAE
+from .dampers import linkage
+from .specs import DESIGN_VARIABLES
+from .symbols import SymbolicStudy
+from .tyres import aligning_moment, side_force
+
+__all__ = ["build", "effective_caster"]
+
+YAW_STATES = ("yaw_angle", "yaw_rate")
+LATERAL_STATES = ("bending_angle", "bending_rate")
+
+
+def effective_caster(gear: Any) -> Any:
+    """Effective caster with rake, e cos(phi) + (R_w + e sin(phi)) tan(phi) [m]; thesis (4-5)."""
+    e, phi, R_w = gear.caster_length, gear.rake_angle, gear.wheel_radius
+    return e * ca.cos(phi) + (R_w + e * ca.sin(phi)) * ca.tan(phi)
+
+
+def build(symbols: SymbolicStudy) -> DAE:
+    """The equations of motion of a study.
+
+    Parameters
+    ----------
+    symbols : SymbolicStudy
+
+    Returns
+    -------
+    DAE
+        Order 3: states yaw_angle [rad], yaw_rate [rad/s], string_deflection [m]. Order 5: bending_angle [rad] and
+        bending_rate [rad/s] stand before string_deflection. No algebraic unknowns at these geometry levels.
+    """
+    study = symbols.study
+    design_names = DESIGN_VARIABLES[study.damper.topology]
+    design = {name: ca.SX.sym(name) for name in design_names}
+    speed, load = ca.SX.sym("speed"), ca.SX.sym("load")
+    damper_torque = linkage(study.damper, design, study.material.youngs_modulus).torque
+
+    state_names = (*YAW_STATES, *(LATERAL_STATES if study.gear.order == 5 else ()), "string_deflection")
+    x = {name: ca.SX.sym(name) for name in state_names}
+    ode = _equations(study.gear, study.tyre, damper_torque, x, speed, load)
+    return DAE(
+        x=ca.vertcat(*x.values()),
+        z=ca.SX(0, 1),
+        design=ca.vertcat(ca.SX(0, 1), *design.values()),
+        data=symbols.data,
+        speed=speed,
+        load=load,
+        ode=ode,
+        alg=ca.SX(0, 1),
+        state_names=state_names,
+        design_names=design_names,
+        data_names=symbols.names,
+    )
+
+
+def _equations(gear: Any, tyre: Any, damper_torque: Any, x: dict[str, Any], V: Any, F_z: Any) -> Any:
+    # theory page, section 2: psi yaw, delta lateral bending, y string deflection, phi rake, e caster, a half contact
+    # length, sigma relaxation length, kappa tread-width moment
+    psi, psi_t, y = x["yaw_angle"], x["yaw_rate"], x["string_deflection"]
+    phi, e, a, sigma = gear.rake_angle, gear.caster_length, tyre.half_contact_length, tyre.relaxation_length
+    e_eff = effective_caster(gear)
+    theta = psi * ca.cos(phi)
+    F_y, M_z = side_force(tyre, y, F_z), aligning_moment(tyre, y, F_z)
+    M_kappa = tyre.tread_width_moment * ca.cos(phi) * psi_t / V
+    M_load = F_z * ca.sin(phi) * e_eff * ca.sin(theta)
+
+    psi_tt = (damper_torque(psi, psi_t) - e_eff * F_y - M_z - M_kappa + M_load) / gear.yaw_inertia
+    y_t = V * ca.sin(theta) + (e_eff - a) * psi_t * ca.cos(theta) * ca.cos(phi) - V / sigma * y * ca.cos(theta)
+    if gear.order == 3:
+        return ca.vertcat(psi_t, psi_tt, y_t)
+
+    strut, l_g = gear.lateral, gear.lateral.height
+    delta, delta_t = x["bending_angle"], x["bending_rate"]
+    bending = -strut.stiffness * delta - strut.damping * delta_t
+    bending += -l_g * F_y * ca.cos(theta) * ca.cos(phi) * ca.cos(delta) + F_z * e_eff * ca.sin(theta)
+    return ca.vertcat(psi_t, psi_tt, delta_t, bending / strut.inertia, y_t + l_g * delta_t * ca.cos(delta))

@@ -1,0 +1,183 @@
+"""Figures: each function takes a record and an axes (or figure) and returns it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg", force=False)
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .modes import ModeTable
+from .region import FeasibleRegion
+from .results import UNITS, DesignResult
+
+__all__ = ["mass_by_part", "modes_before_after", "modes_over_speed", "region", "save"]
+
+COLOURS = {"torsional": "#0b6e99", "lateral": "#c2571a", "string": "#6b6b6b"}
+STYLE = {
+    "font.size": 10,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "figure.constrained_layout.use": True,
+    "svg.hashsalt": "damperopt",
+}
+SYMBOLS = {
+    "c_lambda": r"Damping $c_\lambda$",
+    "k_lambda": r"Spring stiffness $k_\lambda$",
+    "I_arm": r"Second moment of area of the arm $I_\mathrm{arm}$",
+}
+CONSTRAINT_NAMES = {
+    "arm_stress": "arm stress",
+    "arm_fatigue": "arm fatigue",
+    "working_stroke": "working stroke",
+    "damper_length": "damper length",
+}
+
+
+def save(figure: Any, folder: Path, name: str) -> list[Path]:
+    """Write a figure as PNG and SVG and close it; returns both paths."""
+    paths = [folder / f"{name}.png", folder / f"{name}.svg"]
+    figure.savefig(paths[0], dpi=150)
+    figure.savefig(paths[1], metadata={"Date": None})
+    plt.close(figure)
+    return paths
+
+
+def modes_over_speed(table: ModeTable, margin: float = 0.0, title: str = "", axes: Any = None) -> Any:
+    """Real part and frequency of the modes over speed, unstable speeds shaded.
+
+    Parameters
+    ----------
+    table : ModeTable
+    margin : float
+        Stability margin, drawn as a line [1/s].
+    title : str
+        Title of the upper panel.
+    axes : array of Axes or None
+        Two axes, for real part and frequency.
+
+    Returns
+    -------
+    Figure
+    """
+    with plt.rc_context(STYLE):
+        if axes is None:
+            _, axes = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=[3, 2])
+        upper, lower = axes
+        _shade(upper, table, margin)
+        for name in dict.fromkeys(table.names):
+            for position, j in enumerate(j for j, n in enumerate(table.names) if n == name):
+                root = table.eigenvalues[:, j]
+                label = name if position == 0 else None
+                upper.plot(table.speeds, root.real, color=COLOURS[name], label=label, lw=1.8)
+                moving = np.where(np.abs(root.imag) > 1e-6, table.frequency[:, j], np.nan)
+                if name != "string" and position == 0:
+                    lower.plot(table.speeds, moving, color=COLOURS[name], lw=1.8)
+        upper.axhline(0, color="black", lw=0.8)
+        if margin > 0:
+            upper.axhline(-margin, color="#a11d33", lw=1.2, ls="--", label=f"margin {margin:g} 1/s")
+        upper.set_yscale("symlog", linthresh=max(margin, 0.1), linscale=0.8)
+        upper.margins(y=0.12)
+        upper.set_ylabel("Real part of the eigenvalues [1/s]")
+        upper.set_title(title, fontsize=10)
+        lower.set_ylabel("Frequency [Hz]")
+        lower.set_ylim(bottom=0)
+        lower.margins(y=0.15)
+        lower.set_xlabel("Speed [m/s]")
+        upper.figure.legend(*_unique(upper), loc="outside lower center", ncols=5, frameon=False)
+        return upper.figure
+
+
+def _unique(axis: Any) -> tuple[list[Any], list[str]]:
+    handles, labels = axis.get_legend_handles_labels()
+    unique = dict(zip(labels, handles, strict=True))
+    return list(unique.values()), list(unique)
+
+
+def _shade(axis: Any, table: ModeTable, margin: float) -> None:
+    """Unstable speeds in red; stable ones that miss the margin in yellow."""
+    abscissa = table.abscissa
+    for inside, colour, label in (
+        (abscissa >= 0, "#f2c4c4", "unstable"),
+        ((abscissa < 0) & (abscissa > -margin * (1 + 1e-6)), "#f7ebc0", "margin missed"),
+    ):
+        if inside.any():
+            axis.fill_between(
+                table.speeds, 0, 1, where=inside, transform=axis.get_xaxis_transform(), color=colour, lw=0, label=label, step="mid"
+            )
+
+
+def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> Any:
+    """Modes of the start and of the optimum side by side; returns the Figure."""
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, 2, sharex=True, sharey="row", figsize=(10, 6), height_ratios=[3, 2])
+        modes_over_speed(before, margin, "Before: start of the study", axes[:, 0])
+        modes_over_speed(after, margin, "After: optimum", axes[:, 1])
+        for legend in figure.legends:
+            legend.remove()
+        handles = dict(zip(*reversed(_unique(axes[0, 0])), strict=True)) | dict(zip(*reversed(_unique(axes[0, 1])), strict=True))
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=6, frameon=False)
+        for axis in axes[:, 1]:
+            axis.set_ylabel("")
+        figure.suptitle(f"Modes over speed at {after.load / 1e3:g} kN", fontsize=11)
+        return figure
+
+
+def mass_by_part(result: DesignResult, axis: Any = None) -> Any:
+    """Horizontal bars of the mass by part; returns the Figure."""
+    with plt.rc_context(STYLE):
+        if axis is None:
+            _, axis = plt.subplots(figsize=(7, 0.6 * len(result.mass.parts) + 1.4))
+        parts = dict(sorted(result.mass.parts.items(), key=lambda item: item[1]))
+        bars = axis.barh(list(parts), list(parts.values()), color="#0b6e99", height=0.6)
+        axis.bar_label(bars, [f"{mass:.2f} kg" for mass in parts.values()], padding=4)
+        axis.margins(x=0.15)
+        axis.grid(axis="y", visible=False)
+        axis.set_xlabel("Mass [kg]")
+        axis.set_title(f"{result.topology}, {result.material}: {result.mass.total:.2f} kg", fontsize=10)
+        return axis.figure
+
+
+def region(record: FeasibleRegion, axis: Any = None) -> Any:
+    """Feasible region with the limits that bound it, lines of equal mass and the optimum; returns the Figure."""
+    with plt.rc_context(STYLE):
+        if axis is None:
+            _, axis = plt.subplots(figsize=(7.5, 5.6))
+        X, Y = record.x, record.y
+        axis.contourf(X, Y, record.feasible.astype(float), levels=[0.5, 1.5], colors=["#cfe8d5"])
+        handles = [plt.Rectangle((0, 0), 1, 1, color="#cfe8d5")]
+        labels = ["feasible"]
+        limits = {"stability margin": (np.where(record.stable, -1.0, 1.0), "#a11d33", "-")}
+        styles = iter(("--", "-.", ":", (0, (5, 1, 1, 1)), (0, (1, 1))))
+        for name, row in record.violated.items():
+            if name in CONSTRAINT_NAMES and (row > 0).any() and (row < 0).any():
+                limits[CONSTRAINT_NAMES[name]] = (row, "#333333", next(styles))
+        for name, (values, colour, style) in limits.items():
+            if (values > 0).any() and (values < 0).any():
+                axis.contour(X, Y, values, levels=[0], colors=[colour], linestyles=[style], linewidths=1.6)
+                handles.append(plt.Line2D([], [], color=colour, ls=style, lw=1.6))
+                labels.append(f"limit of {name}")
+        total = record.mass[np.isfinite(record.mass)]
+        low = float(record.mass[len(Y) // 2, len(X) // 2])
+        levels = [m for m in low * np.array([0.6, 0.8, 1, 1.25, 1.5, 2, 3]) if total.min() < m < total.max()]
+        if levels:
+            lines = axis.contour(X, Y, record.mass, levels=levels, colors="#8a8a8a", linewidths=0.8)
+            axis.clabel(lines, fmt=lambda m: f"{m:.3g} kg", fontsize=8)
+        (star,) = axis.plot(
+            record.design[record.x_name], record.design[record.y_name], "*", ms=14, color="#e0a100", mec="black", ls="none"
+        )
+        handles.append(star)
+        labels.append("optimum")
+        axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
+        axis.set_xlabel(f"{SYMBOLS[record.x_name]} [{UNITS[record.x_name]}]")
+        axis.set_ylabel(f"{SYMBOLS[record.y_name]} [{UNITS[record.y_name].replace('^4', '⁴')}]")
+        axis.figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
+        axis.set_title("Feasible region, other variables at the optimum", fontsize=10)
+        return axis.figure

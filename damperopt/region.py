@@ -1,0 +1,108 @@
+"""Feasible region of a study in the plane of two design variables, the others at the optimum; for drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
+from .problem import DesignProblem
+from .specs import Damper, Study
+from .stability import linear_gear
+
+__all__ = ["FeasibleRegion", "feasible_region"]
+
+
+@dataclass(frozen=True)
+class FeasibleRegion:
+    """Maps over a plane of two design variables.
+
+    Attributes
+    ----------
+    x_name, y_name : str
+        Design variables of the axes.
+    x, y : ndarray
+        (m,), (k,) their values [SI].
+    mass : ndarray
+        (k, m) [kg].
+    stable : ndarray
+        (k, m) bool: the margin holds at the speeds and loads looked at.
+    violated : dict of str to ndarray
+        Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
+    design : dict
+        The design that the plane passes through.
+    """
+
+    x_name: str
+    y_name: str
+    x: np.ndarray
+    y: np.ndarray
+    mass: np.ndarray
+    stable: np.ndarray
+    violated: dict[str, np.ndarray]
+    design: dict[str, float]
+
+    @property
+    def feasible(self) -> np.ndarray:
+        """(k, m) bool: stable and no constraint violated."""
+        return self.stable & ~np.any([row > 1e-9 for row in self.violated.values()], axis=0)
+
+
+def feasible_region(
+    study: Study, design: Mapping[str, float], worst: list[tuple[float, float]] = (), points: int = 181
+) -> FeasibleRegion:
+    """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping
+        Design in the plane [SI]; the axes reach a factor of 10 to each side of it.
+    worst : list of (speed, load)
+        Points of the envelope to look at besides 24 speeds at each load.
+    points : int
+        Grid points per axis.
+
+    Returns
+    -------
+    FeasibleRegion
+        A picture, not a proof: stability is looked at on a few speeds.
+    """
+    problem = DesignProblem(study)
+    names = problem.design_names
+    x_name, y_name = names[0], names[1]
+    x, y = (design[name] * np.geomspace(0.1, 10, points) for name in (x_name, y_name))
+    X, Y = np.meshgrid(x, y)
+    designs = np.tile([design[name] for name in names], (X.size, 1))
+    designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
+    found = problem.over_designs(designs)
+    stable = _stable(study, found["torsional_stiffness"], found["torsional_damping"], worst)
+    rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
+    return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stable.reshape(X.shape), rows, dict(design))
+
+
+def _stable(study: Study, k: np.ndarray, c: np.ndarray, worst: list[tuple[float, float]]) -> np.ndarray:
+    """Whether the margin holds for each (k_psi, c_psi): both enter det(s 1 - A) in one place, as k + s c, so linearly."""
+    envelope, margin = study.envelope, study.requirements.stability_margin
+    speeds = np.geomspace(envelope.speed.min, envelope.speed.max, 24)
+    points = [(V, F_z) for F_z in envelope.loads for V in speeds] + list(worst)
+    V, F_z = np.array(points).T
+
+    def polynomial(stiffness: float, damping: float) -> np.ndarray:
+        plain = Damper(topology="rotational", torsional_stiffness=stiffness, torsional_damping=damping)
+        A = linear_gear(study.replace(damper=plain)).matrices(V, F_z)
+        n = A.shape[-1]
+        a = characteristic_polynomial(A, np.eye(n), lambda M: np.trace(M, axis1=1, axis2=2)[:, None, None], n)
+        return np.array([np.broadcast_to(np.ravel(a_i), V.shape) for a_i in a])
+
+    k_scale, c_scale = 1e5, 1e3
+    base = polynomial(0.0, 0.0)
+    per_k, per_c = (polynomial(k_scale, 0.0) - base) / k_scale, (polynomial(0.0, c_scale) - base) / c_scale
+    stable = np.ones(k.size, bool)
+    for j in range(V.size):
+        a = [base[i, j] + per_k[i, j] * k + per_c[i, j] * c for i in range(len(base))]
+        for condition in lienard_chipart(shifted(a, margin)).values():
+            stable &= condition > 0
+    return stable

@@ -1,0 +1,163 @@
+"""IPOPT on the design problem: one local solution at given stability points, with multipliers and KKT residual."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .problem import DesignProblem
+from .program import HurwitzProgram, Instance, Program
+
+__all__ = ["LocalSolution", "NlpSolver"]
+
+_OPTIONS = {
+    "print_time": False,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.max_iter": 300,
+    # relaxed bounds on a Hurwitz determinant are worth 1e-3 in the spectral abscissa
+    "ipopt.bound_relax_factor": 0.0,
+    "ipopt.nlp_scaling_method": "none",  # the rows are scaled by their meaning already
+    "ipopt.honor_original_bounds": "yes",
+}
+
+
+@dataclass(frozen=True)
+class LocalSolution:
+    """A local solution of the program, or the point where IPOPT gave up.
+
+    Attributes
+    ----------
+    converged : bool
+    status : str
+        IPOPT's word.
+    design : dict
+        Design variables [SI].
+    objective : float
+        Mass [kg]; the price of the relaxation for the elastic program.
+    extra : ndarray
+        Variables of the program beyond those of the design.
+    row_multipliers, bound_multipliers : ndarray
+        Of the strength and geometry rows (>= 0) and of the bounds of the scaled variables (positive at an upper bound).
+    data_gradient : ndarray
+        Derivative of the optimal mass with respect to the program's parameters (envelope theorem): data, load limit,
+        speeds and loads of the slots, and scales, which it does not depend on.
+    kkt_residual : float
+        Largest of |grad L|, complementarity and violation, recomputed from the derivatives (not IPOPT's own figure).
+    points : tuple of (speed, load)
+        Stability points of the solution.
+    form : str
+        Name of the program.
+    iterations : int
+    """
+
+    converged: bool
+    status: str
+    design: dict[str, float]
+    objective: float
+    extra: np.ndarray
+    row_multipliers: np.ndarray
+    bound_multipliers: np.ndarray
+    data_gradient: np.ndarray
+    kkt_residual: float
+    points: tuple[tuple[float, float], ...]
+    form: str
+    iterations: int
+
+
+class NlpSolver:
+    """IPOPT for one design problem; programs with 4, 8, 16, ... slots are built when needed and kept.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    """
+
+    def __init__(self, problem: DesignProblem):
+        self.problem = problem
+        self._built: dict[tuple[type[Program], int], _Built] = {}
+
+    def solve(
+        self,
+        design: Mapping[str, float],
+        points: Sequence[tuple[float, float]],
+        form: type[Program] = HurwitzProgram,
+        **options: Any,
+    ) -> LocalSolution:
+        """Local solution from `design` with stability imposed at `points`.
+
+        Parameters
+        ----------
+        design : mapping
+            Start, design variables by name [SI].
+        points : sequence of (speed, load)
+        form : type
+            Program class.
+        **options : object
+            Passed to `Program.instance`.
+
+        Returns
+        -------
+        LocalSolution
+        """
+        built = self._program(form, len(points))
+        it = built.program.instance(design, points, **options)
+        result = built.solver(x0=it.x0, p=it.p, lbx=it.lbx, ubx=it.ubx, lbg=it.lbg, ubg=it.ubg)
+        stats = built.solver.stats()
+        x, g, lam_g, lam_x = (result[key].full().ravel() for key in ("x", "g", "lam_g", "lam_x"))
+        rows = len(self.problem.constraints)
+        variables = len(self.problem.variables)
+        violation = max(np.max(g - it.ubg), np.max(it.lbg - g), 0.0)
+        return LocalSolution(
+            converged=bool(stats["success"]) and violation <= 1e-6,
+            status=stats["return_status"],
+            design=self.problem.unscaled(x[:variables]),
+            objective=float(result["f"]),
+            extra=x[variables:],
+            row_multipliers=lam_g[:rows],
+            bound_multipliers=lam_x[:variables],
+            data_gradient=built.data_gradient(x, it.p, lam_g).full().ravel(),
+            kkt_residual=_kkt_residual(built, it, x, g, lam_g, lam_x),
+            points=tuple(points),
+            form=form.__name__,
+            iterations=int(stats["iter_count"]),
+        )
+
+    def _program(self, form: type[Program], points: int) -> _Built:
+        slots = max(4, 1 << (points - 1).bit_length())
+        if (form, slots) not in self._built:
+            program = form(self.problem, slots)
+            nlp = program.nlp
+            options = {**_OPTIONS, "ipopt.tol": self.problem.study.solver.tolerance}
+            inputs, multipliers = [nlp["x"], nlp["p"]], ca.SX.sym("multipliers", nlp["g"].shape[0])
+            lagrangian = nlp["f"] + ca.dot(multipliers, nlp["g"])
+            self._built[form, slots] = _Built(
+                program,
+                ca.nlpsol("design", "ipopt", nlp, options),
+                ca.Function("stationarity", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["x"])]),
+                ca.Function("data_gradient", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["p"])]),
+            )
+        return self._built[form, slots]
+
+
+@dataclass(frozen=True)
+class _Built:
+    program: Program
+    solver: ca.Function
+    stationarity: ca.Function
+    data_gradient: ca.Function
+
+
+def _kkt_residual(built: _Built, it: Instance, x: np.ndarray, g: np.ndarray, lam_g: np.ndarray, lam_x: np.ndarray) -> float:
+    """Largest of |grad L|, violation and complementarity, from the derivatives and not from IPOPT's own figures."""
+    free = it.ubx > it.lbx
+    stationarity = (built.stationarity(x, it.p, lam_g).full().ravel() + lam_x)[free]
+    slack = np.concatenate([np.minimum(it.ubg - g, g - it.lbg), np.minimum(it.ubx - x, x - it.lbx)[free]])
+    multipliers = np.concatenate([lam_g, lam_x[free]])
+    limited = np.isfinite(slack)
+    complementarity = np.abs(multipliers[limited] * slack[limited])
+    return float(max(np.abs(stationarity).max(), complementarity.max(initial=0.0), (-slack[limited]).max(initial=0.0)))

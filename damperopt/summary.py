@@ -1,0 +1,119 @@
+"""What the command line shows: the answer first, then what it rests on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from .certify import Certificate
+from .results import UNITS, DesignResult
+from .specs import Study
+from .stability import CriticalSpeed, OperatingPoint
+
+__all__ = ["show_analysis", "show_design", "show_ranking"]
+
+WORDS = {"solved": "[bold green]solved[/]", "infeasible": "[bold red]infeasible[/]", "failed": "[bold red]failed[/]"}
+
+
+def show_design(console: Console, result: DesignResult) -> None:
+    """One result: mass, design, constraints, proof."""
+    console.print(
+        f"\n{WORDS[result.status]}: {escape(result.study)}, {result.topology} ({result.geometry}), {escape(result.material)}"
+    )
+    if result.mass is None:
+        console.print(escape(result.message), soft_wrap=True)
+        return
+    parts = ", ".join(f"{name} {mass:.2f}" for name, mass in result.mass.parts.items())
+    console.print(f"[bold]{result.mass.total:.3f} kg[/] = {parts}")
+    table = _table("design variable", "value", "unit")
+    for name, value in (result.design | result.derived).items():
+        table.add_row(name, *_number(value, UNITS[name]))
+    console.print(table)
+    table = _table("constraint", "value", "limit", "unit", "kg per unit of the limit")
+    for c in result.constraints:
+        style = "bold" if c.active else "dim"
+        price = f"{c.shadow_price:.3g}" if c.active else ""
+        table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
+    console.print(table)
+    worst, certificate, check = result.stability, result.certificate, result.verification
+    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
+    loads = f"{' to ' if certificate.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
+    console.print(
+        f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
+        f"{certificate.speed[1]:g} m/s, {loads} kN",
+        soft_wrap=True,
+    )
+    console.print(
+        f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "
+        f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
+        soft_wrap=True,
+    )
+    others = [f"{o.mass:.3f} kg ({o.starts})" for o in result.local_optima[1:]]
+    if others:
+        console.print(f"Other local optima (starts): {', '.join(others)}", soft_wrap=True)
+    top = [s for s in result.sensitivities if s.value != 0][:5]
+    console.print("Mass per +1 % of: " + ", ".join(f"{s.input} {s.elasticity:+.2f} %" for s in top), soft_wrap=True)
+    console.print("Not checked: " + "; ".join(result.not_checked), soft_wrap=True, style="dim")
+    if result.status == "failed":
+        console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
+
+
+def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
+    """Combinations at equal margins, the lightest first."""
+    table = _table("", "topology", "material", "mass [kg]", "status", "decided by")
+    for position, result in enumerate(results, 1):
+        mass = f"{result.mass.total:.3f}" if result.mass else ""
+        active = ", ".join(c.name for c in result.constraints if c.active)
+        table.add_row(str(position), result.topology, result.material, mass, WORDS[result.status], active)
+    console.print(table)
+    for result in results:
+        if result.status != "solved":
+            console.print(f"{result.topology}, {escape(result.material)}: {escape(result.message)}", soft_wrap=True)
+
+
+def show_analysis(
+    console: Console,
+    study: Study,
+    design: Mapping[str, float],
+    critical: Sequence[CriticalSpeed],
+    worst: OperatingPoint,
+    certificates: Sequence[Certificate],
+) -> None:
+    """Critical speeds, worst point and certificates of a given design."""
+    console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
+    if design:
+        text = ", ".join(" ".join((name, *_number(value, UNITS[name]))) for name, value in design.items())
+        console.print(text, soft_wrap=True)
+    if critical:
+        table = _table("critical speed [m/s]", "load [kN]", "kind", "frequency [Hz]", "with rising speed", "gear")
+        for c in critical:
+            change = "stability boundary" if c.boundary else "stays unstable"
+            direction = "destabilising" if c.destabilising else "stabilising"
+            table.add_row(f"{c.speed:.4f}", f"{c.load / 1e3:g}", c.kind, f"{c.frequency:.3f}", direction, change)
+        console.print(table)
+    else:
+        low, high = study.envelope.speed.min, study.envelope.speed.max
+        console.print(f"No critical speed between {low:g} and {high:g} m/s.")
+    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    for certificate in certificates:
+        goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
+        verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]not met[/]: {certificate.reason}"
+        console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for column in columns:
+        table.add_column(column, justify="right" if column in ("value", "mass [kg]") else "left")
+    return table
+
+
+def _number(value: float, unit: str) -> tuple[str, str]:
+    if unit == "rad":
+        return f"{math.degrees(value):.4g}", "deg"
+    return f"{value:.5g}", unit

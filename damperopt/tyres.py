@@ -1,0 +1,79 @@
+"""Tyre laws: side force and aligning moment of a stretched string whose leading point is deflected by y.
+
+The slip angle is alpha = atan(y/sigma); M_z > 0 restores a positive yaw. Sources: thesis (2-3)..(2-12), (4-8).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import casadi as ca
+
+__all__ = ["aligning_moment", "peak_aligning_moment", "peak_side_force", "side_force"]
+
+
+def side_force(tyre: Any, deflection: Any, load: Any) -> Any:
+    """Side force of the tyre on the wheel.
+
+    Parameters
+    ----------
+    tyre : StringTyre, LinearTyre or StraightTangentTyre
+    deflection : SX
+        String deflection y at the leading contact point [m].
+    load : SX
+        Vertical load F_z [N].
+
+    Returns
+    -------
+    SX
+        F_y [N]; thesis (2-10) for the nonlinear law, (2-4) for the straight tangent.
+    """
+    if tyre.law == "straight_tangent":
+        return tyre.cornering_stiffness * deflection / tyre.relaxation_length
+    slip = ca.atan(deflection / tyre.relaxation_length)
+    if tyre.law == "linear":
+        return tyre.cornering_slope * slip * load
+    X = ca.atan(7 * ca.tan(slip))
+    return tyre.cornering_coefficient * X * ca.cos(0.95 * X) * load
+
+
+def aligning_moment(tyre: Any, deflection: Any, load: Any) -> Any:
+    """Self-aligning moment about the vertical.
+
+    Parameters
+    ----------
+    tyre : StringTyre, LinearTyre or StraightTangentTyre
+    deflection : SX
+        String deflection y at the leading contact point [m].
+    load : SX
+        Vertical load F_z [N].
+
+    Returns
+    -------
+    SX
+        M_z [N m], positive against positive yaw; thesis (4-8), zero beyond the slip limit.
+    """
+    if tyre.law == "straight_tangent":
+        return tyre.aligning_stiffness * deflection / tyre.relaxation_length
+    slip = ca.atan(deflection / tyre.relaxation_length)
+    if tyre.law == "linear":
+        return tyre.aligning_coefficient * slip * load
+    limit = tyre.aligning_slip_limit
+    within = tyre.aligning_coefficient * limit / math.pi * ca.sin(math.pi * slip / limit) * load
+    return ca.if_else(ca.fabs(slip) <= limit, within, 0)
+
+
+# X cos(0.95 X) is largest where 0.95 X tan(0.95 X) = 1, at 0.95 X = 0.860333589...
+_PEAK_ARGUMENT = 0.8603335890193798 / 0.95
+_PEAK_SHAPE = _PEAK_ARGUMENT * math.cos(0.95 * _PEAK_ARGUMENT)
+
+
+def peak_side_force(tyre: Any, load: Any) -> Any:
+    """Largest side force [N] of the nonlinear law at vertical load `load` [N]."""
+    return tyre.cornering_coefficient * _PEAK_SHAPE * load
+
+
+def peak_aligning_moment(tyre: Any, load: Any) -> Any:
+    """Largest aligning moment [N m] of the nonlinear law at vertical load `load` [N], at half the slip limit."""
+    return ca.fabs(tyre.aligning_coefficient) * tyre.aligning_slip_limit / math.pi * load

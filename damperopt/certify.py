@@ -13,11 +13,12 @@ rational arithmetic, with subdivision, for a rectangle of speeds and loads. No p
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, lcm
-from typing import Any
+from typing import Any, TypeAlias
 
 import flint
 import numpy as np
@@ -30,7 +31,7 @@ from .symbols import data_values
 
 __all__ = ["Certificate", "certify"]
 
-Q = flint.fmpq
+Q: TypeAlias = flint.fmpq
 MAX_BOXES = 20_000
 
 
@@ -89,7 +90,7 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
         If the model cannot be evaluated exactly. A design that is not stable is no error.
     """
     if margin is None:
-        margin = study.requirements.stability_margin if study.requirements else 0.0
+        margin = study.required.stability_margin if study.requirements else 0.0
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
     family = _Family(study, design, margin)
@@ -101,8 +102,8 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
     # one stable point for each separate proof
     for load in loads[:1] if envelope.load_is_range else loads:
         if not family.stable_at(rational(speeds[0]), rational(load)):
-            point = speeds[0], load
-            return outcome(point, f"not stable with the margin at {_place(point)}")
+            start = speeds[0], load
+            return outcome(start, f"missed at {_place(start)}, the low end of the range")
 
     if envelope.load_is_range:
         boxes = 0
@@ -110,15 +111,17 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
             point, examined = _zero_in_rectangle(condition, speeds, loads)
             boxes += examined
             if point is not None:
-                return outcome(point, f"a root reaches the line Re = -{margin:g} 1/s at or near {_place(point)}", boxes)
-        return outcome(None, "no root can reach the line Re = -margin in the rectangle, and one point is stable", boxes)
+                return outcome(point, f"missed or touched at or near {_place(point)}", boxes)
+        return outcome(None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and loads", boxes)
 
     for load in loads:
         zeros = [V for condition in family.conditions(rational(load)) for V in _zeros_in_range(condition, speeds)]
         if zeros:
-            point = family.worst_between(sorted(zeros), speeds, load), load
-            return outcome(point, f"a root reaches the line Re = -{margin:g} 1/s near {_place(point)}")
-    return outcome(None, "no root can reach the line Re = -margin at any speed, and one point is stable")
+            worst = family.worst_between(sorted(zeros), speeds, load), load
+            return outcome(
+                worst, f"missed at {_place(worst)}; roots cross at {', '.join(f'{V:.6g}' for V in sorted(zeros))} m/s"
+            )
+    return outcome(None, "one point is stable, and no root can cross at any speed")
 
 
 def _place(point: tuple[float, float]) -> str:
@@ -191,7 +194,7 @@ class _Family:
     def worst_between(self, zeros: list[float], speeds: tuple[float, float], load: float) -> float:
         """Speed of the largest abscissa among the zeros and the middles between them."""
         ends = [speeds[0], *zeros, speeds[1]]
-        candidates = np.array([*zeros, *((a + b) / 2 for a, b in zip(ends, ends[1:], strict=False))])
+        candidates = np.array([*zeros, *((a + b) / 2 for a, b in itertools.pairwise(ends))])
         return float(candidates[self._gear.abscissa(candidates, load).argmax()])
 
 
@@ -201,9 +204,7 @@ def _characteristic(M: list[list[Any]], ring: Any) -> list[Any]:
     coefficients = [ring.constant(1)]
     product = [[ring.constant(int(i == j)) for j in range(n)] for i in range(n)]
     for k in range(1, n + 1):
-        product = [
-            [sum((M[i][m] * product[m][j] for m in range(n) if M[i][m] != 0), zero) for j in range(n)] for i in range(n)
-        ]
+        product = [[sum((M[i][m] * product[m][j] for m in range(n) if M[i][m] != 0), zero) for j in range(n)] for i in range(n)]
         c_k = sum((product[i][i] for i in range(n)), zero) * Q(-1, k)
         coefficients.append(c_k)
         for i in range(n):
@@ -255,7 +256,7 @@ def _primitive(polynomial: flint.fmpz_poly) -> flint.fmpz_poly:
 
 def _sign_changes(chain: list[flint.fmpz_poly], at: Q) -> int:
     signs = [value > 0 for value in (p(at) for p in chain) if value != 0]
-    return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+    return sum(a != b for a, b in itertools.pairwise(signs))
 
 
 def _enclosed(chain: list[flint.fmpz_poly], low: Q, high: Q) -> list[float]:
@@ -294,7 +295,7 @@ def _zero_in_rectangle(
             if box[i, j] <= 0:
                 return (_inside(speeds, v[i]), _inside(loads, f[j])), examined
         if examined > MAX_BOXES:
-            return (_inside(speeds, sum(v) / 2), _inside(loads, sum(f) / 2)), examined
+            return (_inside(speeds, (v[0] + v[1]) / 2), _inside(loads, (f[0] + f[1]) / 2)), examined
         if box.shape[axis] == 1:
             axis = 1 - axis
         for half, (a, b) in zip(_halves(box, axis), _split(v if axis == 0 else f), strict=True):
@@ -318,19 +319,21 @@ def _bernstein(condition: Any, speeds: tuple[float, float], loads: tuple[float, 
     for (_, i, j), coefficient in condition.terms():
         power[i, j] = Fraction(int(coefficient.p), int(coefficient.q))
     for axis, ends in enumerate((speeds, loads)):
-        power = np.apply_along_axis(lambda p, e=ends: _bernstein_1d(p, Fraction(e[0]), Fraction(e[-1])), axis, power)
+        lines = np.moveaxis(power, axis, 0).reshape(power.shape[axis], -1).T
+        converted = [_bernstein_1d(line, Fraction(ends[0]), Fraction(ends[-1])) for line in lines]
+        power = np.array(converted, dtype=object).reshape(-1, power.shape[axis])
+        power = power.T if axis == 0 else power
     scale = lcm(*(c.denominator for c in power.ravel()))
     return np.array([[int(c * scale) for c in row] for row in power], dtype=object)
 
 
-def _bernstein_1d(power: np.ndarray, low: Fraction, high: Fraction) -> np.ndarray:
+def _bernstein_1d(power: Any, low: Fraction, high: Fraction) -> list[Fraction]:
     n = len(power) - 1
     # p(low + (high - low) t) in powers of t, then b_k = sum_i C(k, i)/C(n, i) p_i
     width = high - low
-    moved = [width**i * sum(power[k] * comb(k, i) * low ** (k - i) for k in range(i, n + 1)) for i in range(n + 1)]
-    coefficients = np.empty(n + 1, dtype=object)
-    coefficients[:] = [sum(Fraction(comb(k, i), comb(n, i)) * moved[i] for i in range(k + 1)) for k in range(n + 1)]
-    return coefficients
+    zero = Fraction(0)
+    moved = [width**i * sum((power[k] * comb(k, i) * low ** (k - i) for k in range(i, n + 1)), zero) for i in range(n + 1)]
+    return [sum((Fraction(comb(k, i), comb(n, i)) * moved[i] for i in range(k + 1)), zero) for k in range(n + 1)]
 
 
 def _halves(box: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from importlib.resources import files
@@ -32,6 +32,7 @@ from .stability import critical_speeds, linear_gear, worst_points
 __all__ = ["app", "main"]
 
 INTERRUPTED = 130
+FEW_STARTS = 24
 
 app = typer.Typer(
     name="damperopt",
@@ -71,7 +72,9 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def _options(
-    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")
+    ] = False,
 ) -> None:
     pass
 
@@ -82,7 +85,9 @@ def optimise(
     topology: Annotated[str, typer.Option(help=f"{', '.join(TOPOLOGIES)}, a comma list of them, or all.")] = "",
     material: Annotated[str, typer.Option(help="A material of the library, a comma list, or all.")] = "",
     output: OutputOption = None,
-    workers: Annotated[int | None, typer.Option(min=1, help="Processes. [default: one per core]")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core; one alone for few starts]")
+    ] = None,
     figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
 ) -> None:
     """Find the lightest damper that is stable with the margin over the whole envelope, and prove it.
@@ -99,7 +104,7 @@ def optimise(
     interrupted = False
     with _progress() as report:
         try:
-            for result in optimise_each(studies, workers=workers or _cores(), progress=report, config_file=file):
+            for result in optimise_each(studies, workers=workers or _workers(studies), progress=report, config_file=file):
                 results.append(result)
         except KeyboardInterrupt:
             if not results:
@@ -107,21 +112,24 @@ def optimise(
             interrupted = True
 
     ordered = rank(results)
+    by_combination = {(str(s.damper.topology), s.material.name): s for s in studies}
+
+    def write(place: Path) -> None:
+        shutil.copyfile(file, place / "config.yaml")
+        if len(studies) == 1:
+            _write_design(place, studies[0], ordered[0], figures)
+            return
+        write_ranking(place / "ranking.csv", ordered)
+        for position, result in enumerate(ordered, 1):
+            own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
+            own.mkdir()
+            _write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
+
     if len(studies) == 1:
         summary.show_design(out, ordered[0])
-        write_run(folder, lambda place: _write_design(place, file, studies[0], ordered[0], figures))
     else:
         summary.show_ranking(out, ordered)
-        by_combination = {(s.damper.topology, s.material.name): s for s in studies}
-
-        def write(place: Path) -> None:
-            write_ranking(place / "ranking.csv", ordered)
-            for position, result in enumerate(ordered, 1):
-                own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
-                own.mkdir()
-                _write_design(own, file, by_combination[result.topology, result.material], result, figures and position == 1)
-
-        write_run(folder, write)
+    write_run(folder, write)
     out.print(f"\nResults in {folder}", soft_wrap=True)
     if interrupted:
         err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
@@ -148,10 +156,10 @@ def analyse(
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
-    margin = study.requirements.stability_margin if study.requirements else 0.0
+    margin = study.required.stability_margin if study.requirements else 0.0
     low, high = study.envelope.speed.min, study.envelope.speed.max
     if values is None:
-        values = {name: getattr(study.design, name).start for name in _design_names(study)}
+        values = study.start
     summary.show_analysis(
         out,
         study,
@@ -179,7 +187,9 @@ def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", he
         except ConfigError as error:
             problems += error.problems
         else:
-            out.print(f"{file}: valid ({study.name}, {study.damper.topology}, order {study.gear.order})", markup=False)
+            out.print(
+                f"{file}: valid ({study.name}, {study.damper.topology}, order {study.gear.order})", markup=False, soft_wrap=True
+            )
     if problems:
         raise ConfigError(problems)
 
@@ -204,10 +214,10 @@ def schema() -> None:
     sys.stdout.write(json.dumps(config.json_schema(), indent=2) + "\n")
 
 
-def _write_design(place: Path, file: Path, study: Study, result: DesignResult, figures: bool) -> None:
+def _write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
     (place / "result.json").write_text(result.to_json(), encoding="utf-8")
-    shutil.copyfile(file, place / "config.yaml")
-    if result.mass is None:
+    worst = result.stability
+    if worst is None:
         return
     low, high = study.envelope.speed.min, study.envelope.speed.max
     grid = np.unique(np.linspace(low, high, 400))
@@ -219,7 +229,6 @@ def _write_design(place: Path, file: Path, study: Study, result: DesignResult, f
     from . import plots  # matplotlib takes longer to import than a design takes to find
     from .region import feasible_region
 
-    worst = result.stability
     shown = min(tables, key=lambda table: abs(table.load - worst.load))
     plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
     plots.save(plots.mass_by_part(result), place, "mass")
@@ -231,7 +240,9 @@ def _draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
 
     for table in tables:
         suffix = "" if len(tables) == 1 else f"-{table.load / 1e3:g}kN"
-        plots.save(plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}")
+        plots.save(
+            plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}"
+        )
 
 
 def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
@@ -247,12 +258,6 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
         return study.replace(**changes), result.design
     except ValueError as error:
         raise ConfigError(f"{file}: does not go with {source}: {error}") from None
-
-
-def _design_names(study: Study) -> tuple[str, ...]:
-    from .specs import DESIGN_VARIABLES
-
-    return DESIGN_VARIABLES[study.damper.topology]
 
 
 def _speed_grid(text: str, study: Study) -> np.ndarray:
@@ -280,7 +285,10 @@ def _choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:
     return list(dict.fromkeys(chosen))
 
 
-def _cores() -> int:
+def _workers(studies: Sequence[Study]) -> int:
+    """One process per core, or one alone for few starts: new processes take as long to start as 20 starts to solve."""
+    if sum(study.solver.starts for study in studies) <= FEW_STARTS:
+        return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -69,7 +69,9 @@ def strength(study: Any, design: Mapping[str, Any], event: LimitEvent, rod_diame
     -------
     list of Constraint
     """
-    required, blocks = study.requirements, []
+    required = study.requirements
+    blocks: list[Constraint] = []
+    relaxed: tuple[str, ...]
     if "I_arm" in design:
         stress = arm_stress(study, design, event)
         allowed = allowable_stress(study.material, required.safety_factor)
@@ -90,9 +92,7 @@ def strength(study: Any, design: Mapping[str, Any], event: LimitEvent, rod_diame
     return blocks
 
 
-def geometry(
-    study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any
-) -> list[Constraint]:
+def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any) -> list[Constraint]:
     """Lengths that the gear and its bay allow.
 
     Parameters

@@ -120,13 +120,15 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     """
     variants = []
     for topology in topologies or [study.damper.topology]:
-        for material in materials or [None]:
+        for material in materials or [""]:
             changes = {"damper__topology": topology} | ({"material": material} if material else {})
             try:
                 variants.append(study.replace(**changes))
             except ValidationError as error:
                 message = "; ".join(problem["msg"] for problem in error.errors())
-                raise ConfigError(f"{study.name}: with topology {topology}, material {material or 'as given'}: {message}") from None
+                raise ConfigError(
+                    f"{study.name}: with topology {topology}, material {material or 'as given'}: {message}"
+                ) from None
     return variants
 
 
@@ -182,7 +184,7 @@ def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> De
         topology=study.damper.topology,
         geometry=study.damper.geometry,
         material=study.material.name,
-        stability_margin=study.requirements.stability_margin,
+        stability_margin=study.required.stability_margin,
         starts=starts,
         local_optima=_local_optima(solved),
     )
@@ -198,7 +200,9 @@ def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> De
             return base.model_copy(update={"message": message})
         rescued = best_local(solver, diagnosis.feasible_design, _points_for(problem, diagnosis.feasible_design))
         if not rescued.solved:
-            message = f"a design exists, but the solver stopped from every start ({rescued.solution.status}); raise solver.starts"
+            message = (
+                f"a design exists, but the solver stopped from every start ({rescued.solution.status}); raise solver.starts"
+            )
             return base.model_copy(update={"message": message, "design": diagnosis.feasible_design})
         solved = [rescued]
     best = min(solved, key=lambda found: found.solution.objective)
@@ -258,7 +262,7 @@ def _checked(
 
 def _constraints(problem: DesignProblem, best: EnvelopeSolution) -> tuple[ConstraintResult, ...]:
     study, solution, worst = problem.study, best.solution, best.worst[0]
-    margin = study.requirements.stability_margin
+    margin = study.required.stability_margin
     price = float(solution.data_gradient[problem.data_names.index("requirements.stability_margin")])
     results = [
         ConstraintResult(
@@ -359,7 +363,7 @@ def _infeasible_message(shortfalls: Sequence[Relaxation], alone: Sequence[Relaxa
 
 
 def _short(r: Relaxation) -> str:
-    place = f" at {r.speed:.4g} m/s, {r.load / 1e3:.4g} kN" if r.speed is not None else ""
+    place = "" if r.speed is None or r.load is None else f" at {r.speed:.4g} m/s, {r.load / 1e3:.4g} kN"
     return f"{r.name} can reach {r.needed:.4g} {r.unit}{place}, required {r.limit:.4g} (short by {abs(r.limit - r.needed):.2g})"
 
 

@@ -72,7 +72,7 @@ def _least(solver: NlpSolver, starts: Sequence[Mapping[str, float]], relaxed: li
 def _elastic(solver: NlpSolver, start: Mapping[str, float], relaxed: list[str] | None) -> _Elastic | None:
     """Local solution of the elastic program, exchanged over the envelope."""
     problem = solver.problem
-    study, required = problem.study, problem.study.requirements.stability_margin
+    study, required = problem.study, problem.study.required.stability_margin
     points, design = first_points(solver), dict(start)
     for _ in range(MAX_ROUNDS):
         solution = solver.solve(design, points, ElasticProgram, relaxed=relaxed)
@@ -93,7 +93,7 @@ def _elastic(solver: NlpSolver, start: Mapping[str, float], relaxed: list[str] |
 def _relaxation(solver: NlpSolver, elastic: _Elastic, name: str) -> Relaxation:
     problem, slack = solver.problem, elastic.slacks[name]
     if name == _STABILITY:
-        required = problem.study.requirements.stability_margin
+        required = problem.study.required.stability_margin
         return Relaxation(
             name=name,
             limit=required,

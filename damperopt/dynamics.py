@@ -73,7 +73,7 @@ def _equations(gear: Any, tyre: Any, damper_torque: Any, x: dict[str, Any], V: A
     # theory page, section 2: psi yaw, delta lateral bending, y string deflection, phi rake, e caster, a half contact
     # length, sigma relaxation length, kappa tread-width moment
     psi, psi_t, y = x["yaw_angle"], x["yaw_rate"], x["string_deflection"]
-    phi, e, a, sigma = gear.rake_angle, gear.caster_length, tyre.half_contact_length, tyre.relaxation_length
+    phi, _e, a, sigma = gear.rake_angle, gear.caster_length, tyre.half_contact_length, tyre.relaxation_length
     e_eff = effective_caster(gear)
     theta = psi * ca.cos(phi)
     F_y, M_z = side_force(tyre, y, F_z), aligning_moment(tyre, y, F_z)

@@ -65,7 +65,7 @@ def solve_envelope(
     EnvelopeSolution
     """
     study = solver.problem.study
-    allowed = -study.requirements.stability_margin - study.solver.margin_reserve / 2
+    allowed = -study.required.stability_margin - study.solver.margin_reserve / 2
     points, design, worst = list(points), dict(start), []
     for rounds in range(1, MAX_ROUNDS + 1):
         solution = solver.solve(design, points, form)

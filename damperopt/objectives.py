@@ -112,9 +112,7 @@ def bore(study: Any, event: LimitEvent, rod_diameter: Any) -> Any:
     return ca.sqrt(4 * event.damper_force / (math.pi * study.mass.working_pressure) + rod_diameter**2)
 
 
-def mass_parts(
-    study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any
-) -> dict[str, Any]:
+def mass_parts(study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any) -> dict[str, Any]:
     """Mass by part.
 
     Parameters

@@ -19,7 +19,7 @@ from .results import UNITS, DesignResult
 __all__ = ["mass_by_part", "modes_before_after", "modes_over_speed", "region", "save"]
 
 COLOURS = {"torsional": "#0b6e99", "lateral": "#c2571a", "string": "#6b6b6b"}
-STYLE = {
+STYLE: Any = {
     "font.size": 10,
     "axes.grid": True,
     "grid.alpha": 0.25,
@@ -33,11 +33,11 @@ SYMBOLS = {
     "k_lambda": r"Spring stiffness $k_\lambda$",
     "I_arm": r"Second moment of area of the arm $I_\mathrm{arm}$",
 }
-CONSTRAINT_NAMES = {
-    "arm_stress": "arm stress",
-    "arm_fatigue": "arm fatigue",
-    "working_stroke": "working stroke",
-    "damper_length": "damper length",
+LIMITS = {
+    "arm_stress": ("arm stress", "#333333", "--"),
+    "arm_fatigue": ("arm fatigue", "#7a5195", ":"),
+    "working_stroke": ("working stroke", "#2f6b3a", "-."),
+    "damper_length": ("damper length", "#b36b00", (0, (5, 1, 1, 1))),
 }
 
 
@@ -110,7 +110,15 @@ def _shade(axis: Any, table: ModeTable, margin: float) -> None:
     ):
         if inside.any():
             axis.fill_between(
-                table.speeds, 0, 1, where=inside, transform=axis.get_xaxis_transform(), color=colour, lw=0, label=label, step="mid"
+                table.speeds,
+                0,
+                1,
+                where=inside,
+                transform=axis.get_xaxis_transform(),
+                color=colour,
+                lw=0,
+                label=label,
+                step="mid",
             )
 
 
@@ -122,7 +130,9 @@ def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> An
         modes_over_speed(after, margin, "After: optimum", axes[:, 1])
         for legend in figure.legends:
             legend.remove()
-        handles = dict(zip(*reversed(_unique(axes[0, 0])), strict=True)) | dict(zip(*reversed(_unique(axes[0, 1])), strict=True))
+        handles = dict(zip(*reversed(_unique(axes[0, 0])), strict=True)) | dict(
+            zip(*reversed(_unique(axes[0, 1])), strict=True)
+        )
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=6, frameon=False)
         for axis in axes[:, 1]:
             axis.set_ylabel("")
@@ -131,7 +141,9 @@ def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> An
 
 
 def mass_by_part(result: DesignResult, axis: Any = None) -> Any:
-    """Horizontal bars of the mass by part; returns the Figure."""
+    """Horizontal bars of the mass by part of a result that holds a design; returns the Figure."""
+    if result.mass is None:
+        raise ValueError(f"no design to draw: {result.message}")
     with plt.rc_context(STYLE):
         if axis is None:
             _, axis = plt.subplots(figsize=(7, 0.6 * len(result.mass.parts) + 1.4))
@@ -152,13 +164,12 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
             _, axis = plt.subplots(figsize=(7.5, 5.6))
         X, Y = record.x, record.y
         axis.contourf(X, Y, record.feasible.astype(float), levels=[0.5, 1.5], colors=["#cfe8d5"])
-        handles = [plt.Rectangle((0, 0), 1, 1, color="#cfe8d5")]
+        handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color="#cfe8d5")]
         labels = ["feasible"]
-        limits = {"stability margin": (np.where(record.stable, -1.0, 1.0), "#a11d33", "-")}
-        styles = iter(("--", "-.", ":", (0, (5, 1, 1, 1)), (0, (1, 1))))
-        for name, row in record.violated.items():
-            if name in CONSTRAINT_NAMES and (row > 0).any() and (row < 0).any():
-                limits[CONSTRAINT_NAMES[name]] = (row, "#333333", next(styles))
+        limits: dict[str, Any] = {"stability margin": (-record.stability, "#a11d33", "-")}
+        for name, (words, colour, style) in LIMITS.items():
+            if name in record.violated:
+                limits[words] = (record.violated[name], colour, style)
         for name, (values, colour, style) in limits.items():
             if (values > 0).any() and (values < 0).any():
                 axis.contour(X, Y, values, levels=[0], colors=[colour], linestyles=[style], linewidths=1.6)
@@ -166,7 +177,7 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
                 labels.append(f"limit of {name}")
         total = record.mass[np.isfinite(record.mass)]
         low = float(record.mass[len(Y) // 2, len(X) // 2])
-        levels = [m for m in low * np.array([0.6, 0.8, 1, 1.25, 1.5, 2, 3]) if total.min() < m < total.max()]
+        levels = [m for m in low * np.array([0.6, 0.8, 1, 1.25, 1.5, 2]) if total.min() < m < total.max()]
         if levels:
             lines = axis.contour(X, Y, record.mass, levels=levels, colors="#8a8a8a", linewidths=0.8)
             axis.clabel(lines, fmt=lambda m: f"{m:.3g} kg", fontsize=8)
@@ -178,6 +189,6 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
         axis.set_xlabel(f"{SYMBOLS[record.x_name]} [{UNITS[record.x_name]}]")
         axis.set_ylabel(f"{SYMBOLS[record.y_name]} [{UNITS[record.y_name].replace('^4', '⁴')}]")
-        axis.figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
+        axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
         axis.set_title("Feasible region, other variables at the optimum", fontsize=10)
         return axis.figure

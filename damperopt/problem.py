@@ -87,18 +87,19 @@ class DesignProblem:
         self._rows = ca.Function("rows", inputs, [ca.vertcat(*(c.row for c in self.constraints))])
         self._values = ca.Function("values", inputs, [ca.vertcat(*(ca.horzcat(c.value, c.limit) for c in self.constraints))])
         self._rod = ca.Function("rod", [*inputs[:1], *inputs[2:]], [ca.vertcat(*rod_diameters(symbols.study, event).values())])
-        self._yaw = ca.Function("yaw", [*inputs[:1], *inputs[2:]], [link.torsional_stiffness, link.torsional_damping, event.torque])
+        self._yaw = ca.Function(
+            "yaw", [*inputs[:1], *inputs[2:]], [link.torsional_stiffness, link.torsional_damping, event.torque]
+        )
 
         margin = symbols.study.requirements.stability_margin + study.solver.margin_reserve
         shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
         shifted += margin * ca.SX.eye(dae.x.numel())
         self.shifted_matrix = ca.Function("shifted", [dae.design, symbols.data, dae.speed, dae.load], [shifted])
-        self.variables = tuple(self._variable(name) for name in self.design_names) + (
-            ScaledVariable(ROD, 0.02, 1e-5, 10.0, True),
-        )
+        rod_variable = ScaledVariable(ROD, 0.02, 1e-5, 10.0, True)
+        self.variables = (*map(self._variable, self.design_names), rod_variable)
 
     def _variable(self, name: str) -> ScaledVariable:
-        given = getattr(self.study.design, name)
+        given = self.study.variable(name)
         return ScaledVariable(name, given.start, given.min, given.max, name not in _LINEAR)
 
     def mass_and_rows(self, design: ca.SX, rod: ca.SX, data: ca.SX, load_limit: ca.SX) -> tuple[ca.SX, ca.SX]:

@@ -49,6 +49,8 @@ class Program(Protocol):
 
     nlp: dict[str, ca.SX]
 
+    def __init__(self, problem: DesignProblem, slots: int): ...
+
     def instance(self, design: Mapping[str, float], points: Sequence[tuple[float, float]]) -> Instance: ...
 
 
@@ -80,7 +82,7 @@ class _Slots:
         problem = self.problem
         filled = [*points, *[points[-1]] * (self.slots - len(points))]
         V, F_z = np.array(filled).T
-        required = problem.study.requirements.stability_margin + problem.study.solver.margin_reserve
+        required = problem.study.required.stability_margin + problem.study.solver.margin_reserve
         roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + required
         rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
         return np.concatenate([problem.data, [problem.load_limit], V, F_z, rates]), roots, rates
@@ -207,7 +209,7 @@ class ElasticProgram:
     def __init__(self, problem: DesignProblem, slots: int):
         margin, weight = ca.SX.sym("margin"), ca.SX.sym("weight", slots)
         self._common = common = _Slots(problem, slots, margin)
-        self._margin = problem.study.requirements.stability_margin
+        self._margin = problem.study.required.stability_margin
         slack = ca.SX.sym("slack", common.rows.numel())
         prices = ca.DM([1.0 if c.ratio else 10.0 for c in problem.constraints])
         self._stability = _hurwitz_rows(common, weight)

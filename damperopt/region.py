@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,8 +27,8 @@ class FeasibleRegion:
         (m,), (k,) their values [SI].
     mass : ndarray
         (k, m) [kg].
-    stable : ndarray
-        (k, m) bool: the margin holds at the speeds and loads looked at.
+    stability : ndarray
+        (k, m) least stability condition over the speeds and loads looked at, scaled; > 0 where the margin holds.
     violated : dict of str to ndarray
         Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
     design : dict
@@ -40,18 +40,18 @@ class FeasibleRegion:
     x: np.ndarray
     y: np.ndarray
     mass: np.ndarray
-    stable: np.ndarray
+    stability: np.ndarray
     violated: dict[str, np.ndarray]
     design: dict[str, float]
 
     @property
     def feasible(self) -> np.ndarray:
         """(k, m) bool: stable and no constraint violated."""
-        return self.stable & ~np.any([row > 1e-9 for row in self.violated.values()], axis=0)
+        return (self.stability > 0) & ~np.any([row > 1e-9 for row in self.violated.values()], axis=0)
 
 
 def feasible_region(
-    study: Study, design: Mapping[str, float], worst: list[tuple[float, float]] = (), points: int = 181
+    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 181
 ) -> FeasibleRegion:
     """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
 
@@ -78,14 +78,17 @@ def feasible_region(
     designs = np.tile([design[name] for name in names], (X.size, 1))
     designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
     found = problem.over_designs(designs)
-    stable = _stable(study, found["torsional_stiffness"], found["torsional_damping"], worst)
+    stability = _least_condition(study, found["torsional_stiffness"], found["torsional_damping"], worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
-    return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stable.reshape(X.shape), rows, dict(design))
+    return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))
 
 
-def _stable(study: Study, k: np.ndarray, c: np.ndarray, worst: list[tuple[float, float]]) -> np.ndarray:
-    """Whether the margin holds for each (k_psi, c_psi): both enter det(s 1 - A) in one place, as k + s c, so linearly."""
-    envelope, margin = study.envelope, study.requirements.stability_margin
+def _least_condition(study: Study, k: np.ndarray, c: np.ndarray, worst: Sequence[tuple[float, float]]) -> np.ndarray:
+    """Least Lienard-Chipart condition for each (k_psi, c_psi), each scaled by its median size over the plane.
+
+    Stiffness and damping enter det(s 1 - A) in one place, as k + s c, and so linearly: three matrices per point are enough.
+    """
+    envelope, margin = study.envelope, study.required.stability_margin
     speeds = np.geomspace(envelope.speed.min, envelope.speed.max, 24)
     points = [(V, F_z) for F_z in envelope.loads for V in speeds] + list(worst)
     V, F_z = np.array(points).T
@@ -100,9 +103,9 @@ def _stable(study: Study, k: np.ndarray, c: np.ndarray, worst: list[tuple[float,
     k_scale, c_scale = 1e5, 1e3
     base = polynomial(0.0, 0.0)
     per_k, per_c = (polynomial(k_scale, 0.0) - base) / k_scale, (polynomial(0.0, c_scale) - base) / c_scale
-    stable = np.ones(k.size, bool)
+    least = np.full(k.size, np.inf)
     for j in range(V.size):
         a = [base[i, j] + per_k[i, j] * k + per_c[i, j] * c for i in range(len(base))]
         for condition in lienard_chipart(shifted(a, margin)).values():
-            stable &= condition > 0
-    return stable
+            least = np.minimum(least, condition / np.median(np.abs(condition)))
+    return least

@@ -14,7 +14,7 @@ from .program import HurwitzProgram, Instance, Program
 
 __all__ = ["LocalSolution", "NlpSolver"]
 
-_OPTIONS = {
+_OPTIONS: dict[str, Any] = {
     "print_time": False,
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",

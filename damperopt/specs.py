@@ -6,7 +6,8 @@ in a notebook they can be made directly or changed with `Study.replace`.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -14,13 +15,14 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetJsonSchemaHandler,
     Tag,
     WithJsonSchema,
-    create_model,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError
 
+from .errors import ConfigError
 from .materials import MATERIALS
 from .units import Quantity
 
@@ -58,32 +60,30 @@ DESIGN_VARIABLES: dict[str, tuple[str, ...]] = {
 """Design variables of each layout, in the order of every table and file."""
 
 
-def _quantity(unit: str, **limits: Any) -> Any:
-    quantity = Quantity(unit, **limits)
-    return Annotated[float, BeforeValidator(quantity), WithJsonSchema(quantity.json_schema())]
-
-
 def _refuse(key: str, what: str, allowed: str) -> PydanticCustomError:
     """Error about `key` (a path below the block that is checked; empty: the block itself)."""
     return PydanticCustomError("study", "{what}; allowed: {allowed}", {"what": what, "allowed": allowed, "key": key})
 
 
-Length = _quantity("m", above=0, example="0.6 m")
-Coordinate = _quantity("m", example="120 mm")
-Distance = _quantity("m", at_least=0, example="50 mm")
-Angle = _quantity("rad", above=-1.5, below=1.5, example="9 deg")
-AcuteAngle = _quantity("rad", above=0, below=1.5707963, example="31 deg")
-Inertia = _quantity("kg m^2", above=0, example="100 kg m^2")
-TorsionalStiffness = _quantity("N m/rad", at_least=0, example="380 kN m/rad")
-TorsionalDamping = _quantity("N m s/rad", at_least=0, example="300 N m s/rad")
-Force = _quantity("N", above=0, example="150 kN")
-Torque = _quantity("N m", above=0, example="12 kN m")
-Speed = _quantity("m/s", above=0, example="120 kt")
-Stress = _quantity("Pa", above=0, example="200 GPa")
-Density = _quantity("kg/m^3", above=0, example="7850 kg/m^3")
-Rate = _quantity("1/s", at_least=0, example="0.1 1/s")
-Number = _quantity("1", above=0)
-Fraction = _quantity("1", at_least=0)
+Length = Annotated[float, Quantity("m", above=0, example="0.6 m")]
+Coordinate = Annotated[float, Quantity("m", example="120 mm")]
+Distance = Annotated[float, Quantity("m", at_least=0, example="50 mm")]
+Angle = Annotated[float, Quantity("rad", above=-1.5, below=1.5, example="9 deg")]
+AcuteAngle = Annotated[float, Quantity("rad", above=0, below=1.5707963, example="31 deg")]
+Inertia = Annotated[float, Quantity("kg m^2", above=0, example="100 kg m^2")]
+TorsionalStiffness = Annotated[float, Quantity("N m/rad", at_least=0, example="380 kN m/rad")]
+TorsionalDamping = Annotated[float, Quantity("N m s/rad", at_least=0, example="300 N m s/rad")]
+Force = Annotated[float, Quantity("N", above=0, example="150 kN")]
+Torque = Annotated[float, Quantity("N m", above=0, example="12 kN m")]
+Speed = Annotated[float, Quantity("m/s", above=0, example="120 kt")]
+Stress = Annotated[float, Quantity("Pa", above=0, example="200 GPa")]
+Density = Annotated[float, Quantity("kg/m^3", above=0, example="7850 kg/m^3")]
+Damping = Annotated[float, Quantity("N s/m", above=0, example="1e4 N s/m")]
+Stiffness = Annotated[float, Quantity("N/m", above=0, example="4 MN/m")]
+SecondMoment = Annotated[float, Quantity("m^4", above=0, example="3.4e-6 m^4")]
+Rate = Annotated[float, Quantity("1/s", at_least=0, example="0.1 1/s")]
+Number = Annotated[float, Quantity("1", above=0)]
+Fraction = Annotated[float, Quantity("1", at_least=0)]
 
 
 class Record(BaseModel):
@@ -112,7 +112,7 @@ class Gear(Record):
     lateral: LateralMode | None = None
 
     @model_validator(mode="after")
-    def _lateral_of_fifth_order(self):
+    def _lateral_of_fifth_order(self) -> Self:
         if self.order == 5 and self.lateral is None:
             raise _refuse("lateral", "missing key", "order 5 needs the block lateral (inertia, stiffness, damping, height)")
         return self
@@ -121,32 +121,32 @@ class Gear(Record):
 class _Tyre(Record):
     half_contact_length: Length
     relaxation_length: Length
-    tread_width_moment: _quantity("N m^2/rad", at_least=0, example="570 N m^2/rad") = 0.0
+    tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
 
 
 class StringTyre(_Tyre):
     """Stretched string with the nonlinear side force C_F X cos(0.95 X) F_z, X = atan(7 tan(alpha)) (slope 7 C_F)."""
 
     law: Literal["nonlinear"]
-    cornering_coefficient: _quantity("1/rad", at_least=0)
-    aligning_coefficient: _quantity("m/rad")
-    aligning_slip_limit: _quantity("rad", above=0, below=1.5, example="10 deg")
+    cornering_coefficient: Annotated[float, Quantity("1/rad", at_least=0)]
+    aligning_coefficient: Annotated[float, Quantity("m/rad")]
+    aligning_slip_limit: Annotated[float, Quantity("rad", above=0, below=1.5, example="10 deg")]
 
 
 class LinearTyre(_Tyre):
     """Stretched string with F_y = cornering_slope alpha F_z and M_z = aligning_coefficient alpha F_z."""
 
     law: Literal["linear"]
-    cornering_slope: _quantity("1/rad", at_least=0)
-    aligning_coefficient: _quantity("m/rad")
+    cornering_slope: Annotated[float, Quantity("1/rad", at_least=0)]
+    aligning_coefficient: Annotated[float, Quantity("m/rad")]
 
 
 class StraightTangentTyre(_Tyre):
     """Straight-tangent tyre: F_y = cornering_stiffness y/sigma, M_z = aligning_stiffness y/sigma, for any load."""
 
     law: Literal["straight_tangent"]
-    cornering_stiffness: _quantity("N/rad", at_least=0)
-    aligning_stiffness: _quantity("N m/rad")
+    cornering_stiffness: Annotated[float, Quantity("N/rad", at_least=0)]
+    aligning_stiffness: Annotated[float, Quantity("N m/rad")]
 
 
 Tyre = Annotated[StringTyre | LinearTyre | StraightTangentTyre, Field(discriminator="law")]
@@ -164,7 +164,7 @@ class Damper(Record):
     torsional_damping: TorsionalDamping | None = None
 
     @model_validator(mode="after")
-    def _given_for_rotational_only(self):
+    def _given_for_rotational_only(self) -> Self:
         given = [key for key in ("torsional_stiffness", "torsional_damping") if getattr(self, key) is not None]
         if self.topology == "rotational" and len(given) < 2:
             raise _refuse(
@@ -192,9 +192,9 @@ class Material(Record):
     density: Density
     yield_strength: Stress | None = None
     ultimate_strength: Stress | None = None
-    design_strain: _quantity("1", above=0, below=0.1) | None = None
+    design_strain: Annotated[float, Quantity("1", above=0, below=0.1)] | None = None
     fatigue_strength_coefficient: Stress | None = None
-    fatigue_exponent: _quantity("1", above=-1, below=0) | None = None
+    fatigue_exponent: Annotated[float, Quantity("1", above=-1, below=0)] | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -206,7 +206,7 @@ class Material(Record):
         return data
 
     @model_validator(mode="after")
-    def _complete(self):
+    def _complete(self) -> Self:
         if (self.yield_strength is None) == (self.design_strain is None):
             raise _refuse("", "neither or both of yield_strength and design_strain", "exactly one of them")
         if (self.fatigue_strength_coefficient is None) != (self.fatigue_exponent is None):
@@ -217,11 +217,9 @@ class Material(Record):
     def has_fatigue_data(self) -> bool:
         return self.fatigue_exponent is not None
 
-
-NamedMaterial = Annotated[
-    Material,
-    WithJsonSchema({"anyOf": [{"enum": list(MATERIALS)}, {"type": "object", "description": "material numbers"}]}),
-]
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"enum": list(MATERIALS)}, handler.resolve_ref_schema(handler(schema))]}
 
 
 class Range(Record):
@@ -231,7 +229,7 @@ class Range(Record):
     max: float
 
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         if not self.min < self.max:
             raise _refuse("", f"inverted or empty range: min {self.min:g}, max {self.max:g}", "min < max")
         return self
@@ -244,7 +242,7 @@ class SpeedRange(Range):
     max: Speed
 
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         if not self.min <= self.max:
             raise _refuse("", f"inverted range: min {self.min:g}, max {self.max:g} m/s", "min <= max")
         return self
@@ -289,7 +287,7 @@ class Envelope(Record):
     ]
 
     @model_validator(mode="after")
-    def _some_load(self):
+    def _some_load(self) -> Self:
         if isinstance(self.vertical_load, list):
             if not self.vertical_load:
                 raise _refuse("vertical_load", "an empty list", "one load or more, or {min, max}")
@@ -311,8 +309,8 @@ class Envelope(Record):
 class Fatigue(Record):
     """Fatigue life of the bending arm: `cycles` at `stress_fraction` of the limit-event stress (Basquin)."""
 
-    stress_fraction: _quantity("1", above=0, at_most=1) = 0.5
-    cycles: _quantity("1", at_least=1) = 1e6
+    stress_fraction: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.5
+    cycles: Annotated[float, Quantity("1", at_least=1)] = 1e6
 
 
 class Requirements(Record):
@@ -323,7 +321,7 @@ class Requirements(Record):
     limit_torque: Torque | None = None
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5
-    safety_factor: _quantity("1", at_least=1) = 1.5
+    safety_factor: Annotated[float, Quantity("1", at_least=1)] = 1.5
     """On yield strength at the limit event."""
     fatigue: Fatigue = Fatigue()
     apex_clearance: Length = 0.127e-3
@@ -346,11 +344,11 @@ class Section(Record):
     """
 
     family: Literal["solid_round", "tube", "rectangle", "i_section"] = "tube"
-    thickness_ratio: _quantity("1", above=0, below=0.5) | None = None
+    thickness_ratio: Annotated[float, Quantity("1", above=0, below=0.5)] | None = None
     aspect_ratio: Number | None = None
 
     @model_validator(mode="after")
-    def _shape(self):
+    def _shape(self) -> Self:
         needs = {
             "solid_round": set(),
             "tube": {"thickness_ratio"},
@@ -360,10 +358,9 @@ class Section(Record):
         given = {key for key in ("thickness_ratio", "aspect_ratio") if getattr(self, key) is not None}
         if given != needs:
             raise _refuse(
-                "",
-                f"family '{self.family}' was given {sorted(given) or 'no ratio'}", f"exactly {sorted(needs) or 'no ratio'}"
+                "", f"family '{self.family}' was given {sorted(given) or 'no ratio'}", f"exactly {sorted(needs) or 'no ratio'}"
             )
-        if self.family == "i_section" and self.thickness_ratio * self.aspect_ratio >= 1:
+        if self.thickness_ratio and self.aspect_ratio and self.thickness_ratio * self.aspect_ratio >= 1:
             raise _refuse("", "the web is as wide as the flange", "thickness_ratio * aspect_ratio < 1")
         return self
 
@@ -377,11 +374,11 @@ class MassModel(Record):
     arm_section: Section = _TUBE
     link_section: Section = _TUBE
     support_section: Section = _TUBE
-    cantilever_taper: _quantity("1", above=0, at_most=1) = 0.6
+    cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
     """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
     link_fittings_fraction: Fraction = 0.2
     """Lugs, pins and bushings, as a fraction of the mass of links, bending arm and support arm."""
-    damper_material: NamedMaterial = Material.model_validate("AISI 4340")
+    damper_material: Material = Material.model_validate("AISI 4340")
     """Cylinder, rod, caps and Belleville spring; a metal."""
     working_pressure: Stress = 20.7e6
     """Peak damper pressure at the limit event [Pa] (3000 psi)."""
@@ -391,17 +388,17 @@ class MassModel(Record):
     """Added to the wall and caps that pressure needs [m]."""
     least_rod_diameter: Length = 0.012
     """Thinnest rod that is made [m]."""
-    rod_buckling_factor: _quantity("1", at_least=1) = 2.0
+    rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
     oil_density: Density = 860.0
     damper_fittings_fraction: Fraction = 0.5
     """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
-    spring_utilisation: _quantity("1", above=0, at_most=1) = 0.3
+    spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3
     """Stored energy of a Belleville stack over that of the same volume under uniform stress."""
     lower_lug_height: Coordinate = 0.0
     """Height of the lower torque-link hinge above the wheel axle [m]."""
 
     @model_validator(mode="after")
-    def _damper_is_metal(self):
+    def _damper_is_metal(self) -> Self:
         if self.damper_material.yield_strength is None:
             raise _refuse("damper_material", f"'{self.damper_material.name}' has no yield strength", "a metal")
         return self
@@ -414,8 +411,13 @@ class Variable(Record):
     min: float
     max: float
 
+    @model_validator(mode="before")
+    @classmethod
+    def _single_number_fixes(cls, data: Any) -> Any:
+        return data if isinstance(data, (dict, Variable)) else {"start": data, "min": data, "max": data}
+
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         if not self.min <= self.start <= self.max:
             raise _refuse(
                 "",
@@ -424,31 +426,61 @@ class Variable(Record):
             )
         return self
 
-    @property
-    def fixed(self) -> bool:
-        return self.min == self.max
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        block = handler.resolve_ref_schema(handler(schema))
+        return {"anyOf": [block["properties"]["start"], block]}
 
 
-def _fixed(data: Any) -> Any:
-    return data if isinstance(data, (dict, Variable)) else {"start": data, "min": data, "max": data}
+class DampingVariable(Variable):
+    """Damping of the damper [N s/m]."""
+
+    start: Damping
+    min: Damping
+    max: Damping
 
 
-def _variable(name: str, unit: str, **limits: Any) -> Any:
-    value = _quantity(unit, **limits)
-    record = create_model(f"Variable_{name}", __base__=Variable, start=(value, ...), min=(value, ...), max=(value, ...))
-    single = Quantity(unit, **limits).json_schema()
-    return Annotated[record, BeforeValidator(_fixed), WithJsonSchema({"anyOf": [single, {"type": "object"}]})]
+class StiffnessVariable(Variable):
+    """Stiffness of a spring [N/m]."""
+
+    start: Stiffness
+    min: Stiffness
+    max: Stiffness
+
+
+class SecondMomentVariable(Variable):
+    """Second moment of area [m^4]."""
+
+    start: SecondMoment
+    min: SecondMoment
+    max: SecondMoment
+
+
+class LengthVariable(Variable):
+    """Length [m]."""
+
+    start: Length
+    min: Length
+    max: Length
+
+
+class AngleVariable(Variable):
+    """Acute angle [rad]."""
+
+    start: AcuteAngle
+    min: AcuteAngle
+    max: AcuteAngle
 
 
 class Design(Record):
     """Bounds and starts of the design variables; a layout needs those of `DESIGN_VARIABLES`, others may stand by."""
 
-    c_lambda: _variable("c_lambda", "N s/m", above=0, example="1e4 N s/m") | None = None
-    I_arm: _variable("I_arm", "m^4", above=0, example="3.4e-6 m^4") | None = None
-    k_lambda: _variable("k_lambda", "N/m", above=0, example="4 MN/m") | None = None
-    L: _variable("L", "m", above=0, example="0.6 m") | None = None
-    gamma: _variable("gamma", "rad", above=0, below=1.5707963, example="31 deg") | None = None
-    b: _variable("b", "m", above=0, example="0.2 m") | None = None
+    c_lambda: DampingVariable | None = None
+    I_arm: SecondMomentVariable | None = None
+    k_lambda: StiffnessVariable | None = None
+    L: LengthVariable | None = None
+    gamma: AngleVariable | None = None
+    b: LengthVariable | None = None
 
 
 class Solver(Record):
@@ -457,9 +489,9 @@ class Solver(Record):
     starts: Annotated[int, Field(ge=1, le=4096)] = 16
     """Starting points: the config's own and Sobol points within the bounds."""
     seed: Annotated[int, Field(ge=0)] = 1
-    tolerance: _quantity("1", above=0, at_most=1e-4) = 1e-8
+    tolerance: Annotated[float, Quantity("1", above=0, at_most=1e-4)] = 1e-8
     """Of IPOPT, in scaled variables."""
-    margin_reserve: _quantity("1/s", above=0, at_most=0.1) = 1e-6
+    margin_reserve: Annotated[float, Quantity("1/s", above=0, at_most=0.1)] = 1e-6
     """Added to the stability margin while solving, so that the exact proof of the margin itself has room [1/s]."""
     verification_speeds: Annotated[int, Field(ge=2, le=1_000_000)] = 2000
 
@@ -471,7 +503,7 @@ class Study(Record):
     gear: Gear
     tyre: Tyre
     damper: Damper
-    material: NamedMaterial = Material.model_validate("AISI 4340")
+    material: Material = Material.model_validate("AISI 4340")
     envelope: Envelope
     requirements: Requirements | None = None
     design: Design = Design()
@@ -479,7 +511,7 @@ class Study(Record):
     solver: Solver = Solver()
 
     @model_validator(mode="after")
-    def _complete(self):
+    def _complete(self) -> Self:
         topology = self.damper.topology
         missing = [name for name in DESIGN_VARIABLES[topology] if getattr(self.design, name) is None]
         if missing:
@@ -498,6 +530,23 @@ class Study(Record):
                     f"a torque: the tyre law '{self.tyre.law}' has no peak to derive it from",
                 )
         return self
+
+    @property
+    def required(self) -> Requirements:
+        """The requirements; every layout that can be optimised has them."""
+        if self.requirements is None:
+            raise ConfigError(f"{self.name}: requirements: missing key; allowed: the block requirements, with stability_margin")
+        return self.requirements
+
+    def variable(self, name: str) -> Variable:
+        """The design variable `name`, which the layout must have."""
+        variable: Variable = getattr(self.design, name)
+        return variable
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Design at the starts of the layout's design variables [SI]."""
+        return {name: self.variable(name).start for name in DESIGN_VARIABLES[self.damper.topology]}
 
     def replace(self, **changes: Any) -> Study:
         """The study with some keys changed, checked again as a whole.
@@ -529,14 +578,13 @@ class Study(Record):
         return Study.model_validate(data)
 
 
-def quantity_of(annotation: Any, metadata: list[Any] = ()) -> Quantity | None:
+def quantity_of(annotation: Any, metadata: Sequence[Any] = ()) -> Quantity | None:
     """What a field accepts, if it is a number with a unit; optional fields included."""
-    for note in metadata:
-        if isinstance(note, BeforeValidator) and isinstance(note.func, Quantity):
-            return note.func
-    notes = getattr(annotation, "__metadata__", ())
+    for note in (*metadata, *getattr(annotation, "__metadata__", ())):
+        if isinstance(note, Quantity):
+            return note
     inner = (quantity_of(part) for part in getattr(annotation, "__args__", ()))
-    return quantity_of(None, notes) if notes else next((q for q in inner if q is not None), None)
+    return next((quantity for quantity in inner if quantity), None)
 
 
 def unit_of(study: Study, path: str) -> str:

@@ -34,6 +34,9 @@ SPEED_DEGREE = 2
 """V times any coefficient of the characteristic polynomial is a polynomial of this degree in V (V enters the state
 matrix as V in the string row and as 1/V in the yaw row only)."""
 
+LOADS = 7
+"""Loads of the first look at a load range."""
+
 
 def linearise(dae: DAE) -> ca.Function:
     """State matrix at the equilibrium x = 0, by automatic differentiation.
@@ -152,7 +155,7 @@ def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> Line
     """
     model = LinearModel(study)
     if design is None:
-        design = {name: getattr(study.design, name).start for name in model.design_names}
+        design = study.start
     return model.at(design)
 
 
@@ -293,17 +296,22 @@ def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, s
 
     points = [point for load in envelope.loads for point in at(load)]
     if envelope.load_is_range and max(p.abscissa for p in points) <= enough:
-        low, high = envelope.loads
-        loads = np.linspace(low, high, 7)
-        inner = [at(load) for load in loads[1:-1]]
-        points += [point for found in inner for point in found]
-        top = max(points, key=lambda p: p.abscissa).load
-        bracket = loads[np.searchsorted(loads, top) - 1 if top > low else 0], loads[min(np.searchsorted(loads, top) + 1, 6)]
-        best = minimize_scalar(
-            lambda load: -at(load)[0].abscissa, bounds=bracket, method="bounded", options={"xatol": 1e-7 * high}
-        )
-        points += at(best.x)
+        loads = np.linspace(envelope.loads[0], envelope.loads[-1], LOADS)
+        per_load = [at(load) for load in loads]
+        height = np.array([found[0].abscissa for found in per_load])
+        points = [point for found in per_load for point in found]
+        for i in _peaks(height):
+            bracket = loads[max(i - 1, 0)], loads[min(i + 1, LOADS - 1)]
+            best = minimize_scalar(
+                lambda load: -at(load)[0].abscissa, bounds=bracket, method="bounded", options={"xatol": 1e-7 * loads[-1]}
+            )
+            points += at(best.x)
     return sorted(points, key=lambda point: -point.abscissa)
+
+
+def _peaks(height: np.ndarray) -> list[int]:
+    """Indices of the local maxima of a sequence, its ends included."""
+    return [i for i in range(len(height)) if height[i] >= height[max(i - 1, 0) : i + 2].max()]
 
 
 def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: int) -> list[OperatingPoint]:
@@ -323,8 +331,7 @@ def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: i
     speeds = np.geomspace(low, high, samples)
     speeds[0], speeds[-1] = low, high
     height = gear.abscissa(speeds, load)
-    peaks = [i for i in range(samples) if height[i] >= height[max(i - 1, 0) : i + 2].max()]
-    found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in peaks]
+    found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
 
     polynomials = speed_polynomials(gear, load, high)
     for _ in range(20):

@@ -24,11 +24,12 @@ def show_design(console: Console, result: DesignResult) -> None:
     console.print(
         f"\n{WORDS[result.status]}: {escape(result.study)}, {result.topology} ({result.geometry}), {escape(result.material)}"
     )
-    if result.mass is None:
+    mass, worst, certificate, check = result.mass, result.stability, result.certificate, result.verification
+    if mass is None or worst is None or certificate is None or check is None:
         console.print(escape(result.message), soft_wrap=True)
         return
-    parts = ", ".join(f"{name} {mass:.2f}" for name, mass in result.mass.parts.items())
-    console.print(f"[bold]{result.mass.total:.3f} kg[/] = {parts}")
+    parts = ", ".join(f"{name} {m:.2f}" for name, m in mass.parts.items())
+    console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
     table = _table("design variable", "value", "unit")
     for name, value in (result.design | result.derived).items():
         table.add_row(name, *_number(value, UNITS[name]))
@@ -39,7 +40,6 @@ def show_design(console: Console, result: DesignResult) -> None:
         price = f"{c.shadow_price:.3g}" if c.active else ""
         table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
     console.print(table)
-    worst, certificate, check = result.stability, result.certificate, result.verification
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
     loads = f"{' to ' if certificate.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
@@ -65,7 +65,7 @@ def show_design(console: Console, result: DesignResult) -> None:
 
 def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
     """Combinations at equal margins, the lightest first."""
-    table = _table("", "topology", "material", "mass [kg]", "status", "decided by")
+    table = _table("", "topology", "material", "mass, kg", "status", "decided by")
     for position, result in enumerate(results, 1):
         mass = f"{result.mass.total:.3f}" if result.mass else ""
         active = ", ".join(c.name for c in result.constraints if c.active)
@@ -90,11 +90,12 @@ def show_analysis(
         text = ", ".join(" ".join((name, *_number(value, UNITS[name]))) for name, value in design.items())
         console.print(text, soft_wrap=True)
     if critical:
-        table = _table("critical speed [m/s]", "load [kN]", "kind", "frequency [Hz]", "with rising speed", "gear")
+        table = _table("critical speed", "load", "kind", "frequency", "root", "gear")
         for c in critical:
-            change = "stability boundary" if c.boundary else "stays unstable"
-            direction = "destabilising" if c.destabilising else "stabilising"
-            table.add_row(f"{c.speed:.4f}", f"{c.load / 1e3:g}", c.kind, f"{c.frequency:.3f}", direction, change)
+            after = "unstable" if c.destabilising else "stable"
+            change = f"{after} above" if c.boundary else "unstable on both sides"
+            direction = "destabilised" if c.destabilising else "stabilised"
+            table.add_row(f"{c.speed:.4f} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
     else:
         low, high = study.envelope.speed.min, study.envelope.speed.max
@@ -109,7 +110,7 @@ def show_analysis(
 def _table(*columns: str) -> Table:
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
     for column in columns:
-        table.add_column(column, justify="right" if column in ("value", "mass [kg]") else "left")
+        table.add_column(column, justify="right" if column in ("value", "mass, kg") else "left")
     return table
 
 

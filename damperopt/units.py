@@ -7,9 +7,9 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from typing import Any
+from typing import Any, NoReturn
 
-from pydantic_core import PydanticCustomError
+from pydantic_core import PydanticCustomError, core_schema
 
 __all__ = ["Quantity"]
 
@@ -46,7 +46,7 @@ def _product(number_text: str, factor: float) -> float:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a key of the configuration accepts: a unit and a range.
+    """What a key of the configuration accepts, a unit and a range: ``Annotated[float, Quantity("m", above=0)]``.
 
     Parameters
     ----------
@@ -111,8 +111,10 @@ class Quantity:
             self._refuse(f"{found}{given} is out of range")
         return value
 
-    def json_schema(self) -> dict[str, Any]:
-        """JSON Schema of the key, for editors."""
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Any) -> dict[str, Any]:
         number: dict[str, Any] = {"type": "number"}
         for keyword, limit in (
             ("exclusiveMinimum", self.above),
@@ -144,5 +146,5 @@ class Quantity:
             self._refuse(f"{found!r} has the unit '{unit}', which is unknown or of another dimension")
         return _product(number, factor)
 
-    def _refuse(self, what: str):
+    def _refuse(self, what: str) -> NoReturn:
         raise PydanticCustomError("quantity", "{what}; allowed: {allowed}", {"what": what, "allowed": self.describe()})

@@ -52,9 +52,9 @@ def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
     low, high = envelope.speed.min, envelope.speed.max
     speeds = np.union1d(np.linspace(low, high, count // 2 + 1), np.geomspace(low, high, count // 2 + 1))
     speeds = np.clip(speeds, low, high)
-    loads = np.linspace(*envelope.loads, 21) if envelope.load_is_range else np.array(envelope.loads)
+    loads = np.linspace(envelope.loads[0], envelope.loads[-1], 21) if envelope.load_is_range else np.array(envelope.loads)
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
     abscissa = linear_gear(study, design).abscissa(V, F_z)
     top = int(abscissa.argmax())
     worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
-    return GridCheck(worst.abscissa <= -study.requirements.stability_margin, len(speeds), len(loads), worst)
+    return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)

@@ -21,7 +21,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from . import config, summary
 from .certify import certify
 from .design import combinations, optimise_each, rank
-from .errors import ConfigError, DamperoptError, OutputError
+from .errors import ConfigError, DamperoptError, Interrupted, OutputError
 from .materials import MATERIALS
 from .modes import ModeTable, track_modes
 from .output import run_folder, write_modes, write_ranking, write_run
@@ -31,7 +31,6 @@ from .stability import critical_speeds, linear_gear, worst_points
 
 __all__ = ["app", "main"]
 
-INTERRUPTED = 130
 FEW_STARTS = 24
 
 app = typer.Typer(
@@ -41,7 +40,8 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-out, err = Console(highlight=False), Console(stderr=True, highlight=False)
+# no emoji: 5:100:1 is a range of speeds
+out, err = Console(highlight=False, emoji=False), Console(stderr=True, highlight=False, emoji=False)
 
 ConfigArgument = Annotated[Path, typer.Argument(metavar="CONFIG", help="Study, a YAML file.")]
 OutputOption = Annotated[
@@ -56,9 +56,6 @@ def main() -> None:
     except DamperoptError as error:
         err.print(str(error), markup=False, soft_wrap=True)
         sys.exit(error.exit_code)
-    except KeyboardInterrupt:
-        err.print("interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
@@ -108,7 +105,7 @@ def optimise(
                 results.append(result)
         except KeyboardInterrupt:
             if not results:
-                raise
+                raise Interrupted("interrupted; nothing was finished, nothing was written") from None
             interrupted = True
 
     ordered = rank(results)
@@ -133,7 +130,7 @@ def optimise(
     out.print(f"\nResults in {folder}", soft_wrap=True)
     if interrupted:
         err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
-        raise typer.Exit(INTERRUPTED)
+        raise typer.Exit(Interrupted.exit_code)
     codes = {result.exit_code for result in results}
     raise typer.Exit(4 if 4 in codes else 0 if 0 in codes else 3)
 

@@ -83,11 +83,7 @@ def optimise(
     ConfigError
         If the layout has no design variables (topology ``rotational``).
     """
-    if study.damper.topology not in TOPOLOGIES:
-        raise ConfigError(
-            f"{config_file or study.name}: damper.topology: 'rotational' has no design variables to optimise; "
-            f"allowed: {', '.join(TOPOLOGIES)} (or use 'damperopt analyse')"
-        )
+    combinations(study, [], [])  # refuses what cannot be optimised
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
     if pool is None and workers > 1:
         with executor(workers) as own:
@@ -118,6 +114,11 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     ConfigError
         If the study lacks what a combination needs.
     """
+    if not topologies and study.damper.topology not in TOPOLOGIES:
+        raise ConfigError(
+            f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
+            f"allowed: {', '.join(TOPOLOGIES)} (or use 'damperopt analyse')"
+        )
     variants = []
     for topology in topologies or [study.damper.topology]:
         for material in materials or [""]:
@@ -125,7 +126,7 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
             try:
                 variants.append(study.replace(**changes))
             except ValidationError as error:
-                message = "; ".join(problem["msg"] for problem in error.errors())
+                message = "; ".join(f"{problem.get('ctx', {}).get('key', '')}: {problem['msg']}" for problem in error.errors())
                 raise ConfigError(
                     f"{study.name}: with topology {topology}, material {material or 'as given'}: {message}"
                 ) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["CertificateError", "ConfigError", "DamperoptError", "OutputError"]
+__all__ = ["CertificateError", "ConfigError", "DamperoptError", "Interrupted", "OutputError"]
 
 
 class DamperoptError(Exception):
@@ -25,6 +25,12 @@ class ConfigError(DamperoptError):
     def __init__(self, problems: list[str] | str):
         self.problems = [problems] if isinstance(problems, str) else list(problems)
         super().__init__("\n".join(self.problems))
+
+
+class Interrupted(DamperoptError):
+    """The user stopped the run."""
+
+    exit_code = 130
 
 
 class OutputError(DamperoptError):

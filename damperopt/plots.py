@@ -70,35 +70,42 @@ def modes_over_speed(table: ModeTable, margin: float = 0.0, title: str = "", axe
     with plt.rc_context(STYLE):
         if axes is None:
             _, axes = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=[3, 2])
-        upper, lower = axes
-        _shade(upper, table, margin)
-        for name in dict.fromkeys(table.names):
-            for position, j in enumerate(j for j, n in enumerate(table.names) if n == name):
-                root = table.eigenvalues[:, j]
-                label = name if position == 0 else None
-                upper.plot(table.speeds, root.real, color=COLOURS[name], label=label, lw=1.8)
-                moving = np.where(np.abs(root.imag) > 1e-6, table.frequency[:, j], np.nan)
-                if name != "string" and position == 0:
-                    lower.plot(table.speeds, moving, color=COLOURS[name], lw=1.8)
-        upper.axhline(0, color="black", lw=0.8)
-        if margin > 0:
-            upper.axhline(-margin, color="#a11d33", lw=1.2, ls="--", label=f"margin {margin:g} 1/s")
-        upper.set_yscale("symlog", linthresh=max(margin, 0.1), linscale=0.8)
-        upper.margins(y=0.12)
-        upper.set_ylabel("Real part of the eigenvalues [1/s]")
-        upper.set_title(title, fontsize=10)
-        lower.set_ylabel("Frequency [Hz]")
-        lower.set_ylim(bottom=0)
-        lower.margins(y=0.15)
-        lower.set_xlabel("Speed [m/s]")
-        upper.figure.legend(*_unique(upper), loc="outside lower center", ncols=5, frameon=False)
-        return upper.figure
+        _draw_modes(table, margin, title, axes)
+        _legend(axes[0].figure, axes[:1])
+        return axes[0].figure
 
 
-def _unique(axis: Any) -> tuple[list[Any], list[str]]:
-    handles, labels = axis.get_legend_handles_labels()
-    unique = dict(zip(labels, handles, strict=True))
-    return list(unique.values()), list(unique)
+def _draw_modes(table: ModeTable, margin: float, title: str, axes: Any) -> None:
+    upper, lower = axes
+    for name in COLOURS:
+        columns = [j for j, n in enumerate(table.names) if n == name]
+        for j in columns:
+            label = name if j == columns[0] else None
+            upper.plot(table.speeds, table.eigenvalues[:, j].real, color=COLOURS[name], label=label, lw=1.8)
+            if name != "string":
+                oscillating = np.abs(table.eigenvalues[:, j].imag) > 1e-6
+                lower.plot(table.speeds, np.where(oscillating, table.frequency[:, j], np.nan), color=COLOURS[name], lw=1.8)
+    _shade(upper, table, margin)
+    upper.axhline(0, color="black", lw=0.8)
+    if margin > 0:
+        upper.axhline(-margin, color="#a11d33", lw=1.2, ls="--", label=f"margin {margin:g} 1/s")
+    upper.set_yscale("asinh", linear_width=max(margin, 0.1))
+    upper.margins(y=0.12)
+    upper.set_ylabel("Real part of the eigenvalues [1/s]")
+    upper.set_title(title, fontsize=10)
+    lower.set_ylabel("Frequency [Hz]")
+    lower.margins(y=0.2)
+    lower.set_ylim(bottom=0)
+    lower.set_xlabel("Speed [m/s]")
+
+
+def _legend(figure: Any, axes: Any) -> None:
+    """One legend below the figure for what the axes show, each entry once."""
+    entries = {}
+    for axis in axes:
+        handles, labels = axis.get_legend_handles_labels()
+        entries |= dict(zip(labels, handles, strict=True))
+    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=6, frameon=False)
 
 
 def _shade(axis: Any, table: ModeTable, margin: float) -> None:
@@ -126,14 +133,9 @@ def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> An
     """Modes of the start and of the optimum side by side; returns the Figure."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(2, 2, sharex=True, sharey="row", figsize=(10, 6), height_ratios=[3, 2])
-        modes_over_speed(before, margin, "Before: start of the study", axes[:, 0])
-        modes_over_speed(after, margin, "After: optimum", axes[:, 1])
-        for legend in figure.legends:
-            legend.remove()
-        handles = dict(zip(*reversed(_unique(axes[0, 0])), strict=True)) | dict(
-            zip(*reversed(_unique(axes[0, 1])), strict=True)
-        )
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=6, frameon=False)
+        _draw_modes(before, margin, "Before: start of the study", axes[:, 0])
+        _draw_modes(after, margin, "After: optimum", axes[:, 1])
+        _legend(figure, axes[0])
         for axis in axes[:, 1]:
             axis.set_ylabel("")
         figure.suptitle(f"Modes over speed at {after.load / 1e3:g} kN", fontsize=11)
@@ -163,6 +165,8 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         if axis is None:
             _, axis = plt.subplots(figsize=(7.5, 5.6))
         X, Y = record.x, record.y
+        # the scale first: labels of the mass lines are placed on it
+        axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
         axis.contourf(X, Y, record.feasible.astype(float), levels=[0.5, 1.5], colors=["#cfe8d5"])
         handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color="#cfe8d5")]
         labels = ["feasible"]
@@ -180,13 +184,12 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         levels = [m for m in low * np.array([0.6, 0.8, 1, 1.25, 1.5, 2]) if total.min() < m < total.max()]
         if levels:
             lines = axis.contour(X, Y, record.mass, levels=levels, colors="#8a8a8a", linewidths=0.8)
-            axis.clabel(lines, fmt=lambda m: f"{m:.3g} kg", fontsize=8)
+            axis.clabel(lines, fmt=lambda m: f"{m:.3g} kg", fontsize=8, inline_spacing=2)
         (star,) = axis.plot(
             record.design[record.x_name], record.design[record.y_name], "*", ms=14, color="#e0a100", mec="black", ls="none"
         )
         handles.append(star)
         labels.append("optimum")
-        axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
         axis.set_xlabel(f"{SYMBOLS[record.x_name]} [{UNITS[record.x_name]}]")
         axis.set_ylabel(f"{SYMBOLS[record.y_name]} [{UNITS[record.y_name].replace('^4', '⁴')}]")
         axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from fractions import Fraction
+from decimal import Context, Decimal
 from functools import cache
 from typing import Any, NoReturn
 
@@ -14,6 +14,8 @@ from pydantic_core import PydanticCustomError, core_schema
 __all__ = ["Quantity"]
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+
+_DECIMALS = Context(prec=40, traps=[])
 
 
 @cache
@@ -41,7 +43,7 @@ def _factor(unit_text: str, target: str) -> float | None:
 
 def _product(number_text: str, factor: float) -> float:
     """Decimal text times factor, rounded once: 600 mm is 0.6 m, not 0.6000000000000001 m."""
-    return float(Fraction(number_text) * Fraction(repr(factor)))
+    return float(_DECIMALS.multiply(Decimal(number_text), Decimal(repr(factor))))
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,8 @@ class Quantity:
                 number[keyword] = limit
         if self.unit == "1":
             return number
-        text = {"type": "string", "pattern": r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\d\s].*$"}
+        number_text = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
+        text = {"type": "string", "pattern": rf"^\s*{number_text}(\s+\S|[^\d\s.eE+-]).*$"}
         return {"anyOf": [number, text], "description": f"[{self.unit}] {self.describe()}"}
 
     def _number(self, found: Any) -> float:

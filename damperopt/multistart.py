@@ -10,10 +10,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 
-from scipy.stats import qmc
-
 from .exchange import EnvelopeSolution, best_local, first_points
 from .problem import DesignProblem
+from .scan import promising_designs, sobol_designs
 from .solve import NlpSolver
 from .specs import Study
 
@@ -29,7 +28,7 @@ class StartOutcome:
 
 
 def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
-    """The start of the config, then scrambled Sobol points within the bounds of the free variables (scaled).
+    """Where to start: the config's own design, the promising ones of the stiffness scan, and Sobol points.
 
     Parameters
     ----------
@@ -38,17 +37,15 @@ def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
     Returns
     -------
     list of dict
-        `solver.starts` designs, the same for the same seed.
+        `solver.starts` designs, the same for the same seed; one alone is the config's own.
     """
-    settings, variables = problem.study.solver, problem.variables[:-1]
-    own = {v.name: v.start for v in variables}
-    free = [v for v in variables if v.lower < v.upper]
-    if not free or settings.starts == 1:
-        return [own]
-    sobol = qmc.Sobol(len(free), rng=settings.seed)
-    unit = sobol.random_base2((settings.starts - 1).bit_length())[: settings.starts - 1]
-    scaled = qmc.scale(unit, [v.scale(v.lower) for v in free], [v.scale(v.upper) for v in free])
-    return [own] + [own | {v.name: v.unscale(x) for v, x in zip(free, row, strict=True)} for row in scaled.tolist()]
+    study = problem.study
+    others = study.solver.starts - 1
+    if not others or all(v.lower == v.upper for v in problem.variables[:-1]):
+        return [study.start]
+    promising = promising_designs(problem, (others + 1) // 2)
+    sobol = sobol_designs(problem, others - len(promising)).tolist()
+    return [study.start, *promising, *(dict(zip(problem.design_names, row, strict=True)) for row in sobol)]
 
 
 @lru_cache(maxsize=4)
@@ -57,9 +54,8 @@ def solver_for(study_json: str) -> NlpSolver:
     return NlpSolver(DesignProblem(Study.model_validate_json(study_json)))
 
 
-def _run(study_json: str, index: int) -> StartOutcome:
+def _run(study_json: str, index: int, start: dict[str, float]) -> StartOutcome:
     solver = solver_for(study_json)
-    start = starting_designs(solver.problem)[index]
     return StartOutcome(index, best_local(solver, start, first_points(solver)))
 
 
@@ -80,13 +76,14 @@ def run_starts(study: Study, pool: Executor | None, progress: Callable[[int, int
         In the order of the starts, whatever the order of completion.
     """
     text = study.model_dump_json()
-    total = len(starting_designs(solver_for(text).problem))
+    starts = starting_designs(solver_for(text).problem)
+    total = len(starts)
 
     def outcomes() -> Iterator[StartOutcome]:
         if pool is None:
-            yield from (_run(text, index) for index in range(total))
+            yield from (_run(text, index, start) for index, start in enumerate(starts))
         else:
-            yield from pool.map(_run, [text] * total, range(total))
+            yield from pool.map(_run, [text] * total, range(total), starts)
 
     found = []
     for outcome in outcomes():

@@ -101,7 +101,7 @@ def _draw_modes(table: ModeTable, margin: float, title: str, axes: Any) -> None:
 
 def _legend(figure: Any, axes: Any) -> None:
     """One legend below the figure for what the axes show, each entry once."""
-    entries = {}
+    entries: dict[str, Any] = {}
     for axis in axes:
         handles, labels = axis.get_legend_handles_labels()
         entries |= dict(zip(labels, handles, strict=True))

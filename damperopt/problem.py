@@ -106,6 +106,15 @@ class DesignProblem:
         """Total mass [kg] and the strength and geometry rows (<= 0) as expressions."""
         return ca.sum1(self._mass(design, rod, data, load_limit)), self._rows(design, rod, data, load_limit)
 
+    def stiffness_and_damping(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Torsional stiffness [N m/rad] and damping [N m s/rad] as expressions."""
+        k_psi, c_psi, _ = self._yaw(design, data, load_limit)
+        return k_psi, c_psi
+
+    def physical(self, x: ca.SX) -> ca.SX:
+        """Design variables and rod diameter [SI] of scaled variables."""
+        return ca.vertcat(*(ca.exp(x[i]) if v.logarithmic else x[i] for i, v in enumerate(self.variables)))
+
     # plain functions of a design, for reports, tests and other optimisers
 
     def mass(self, design: Mapping[str, float]) -> float:

@@ -60,8 +60,8 @@ class _Slots:
     def __init__(self, problem: DesignProblem, slots: int, margin: ca.SX | None = None):
         self.problem, self.slots, self.order = problem, slots, len(problem.model.state_names)
         self.x = ca.SX.sym("x", len(problem.variables))
-        physical = [ca.exp(self.x[i]) if v.logarithmic else self.x[i] for i, v in enumerate(problem.variables)]
-        design, rod = ca.vertcat(*physical[:-1]), physical[-1]
+        physical = problem.physical(self.x)
+        design, rod = physical[:-1], physical[-1]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         V, F_z, self.rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
         self.mass, self.rows = problem.mass_and_rows(design, rod, data, load_limit)

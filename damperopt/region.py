@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .problem import DesignProblem
-from .specs import Damper, Study
-from .stability import linear_gear
+from .screening import least_conditions
+from .specs import Study
 
 __all__ = ["FeasibleRegion", "feasible_region"]
 
@@ -78,34 +77,6 @@ def feasible_region(
     designs = np.tile([design[name] for name in names], (X.size, 1))
     designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
     found = problem.over_designs(designs)
-    stability = _least_condition(study, found["torsional_stiffness"], found["torsional_damping"], worst)
+    stability = least_conditions(study, found["torsional_stiffness"], found["torsional_damping"], worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))
-
-
-def _least_condition(study: Study, k: np.ndarray, c: np.ndarray, worst: Sequence[tuple[float, float]]) -> np.ndarray:
-    """Least Lienard-Chipart condition for each (k_psi, c_psi), each scaled by its median size over the plane.
-
-    Stiffness and damping enter det(s 1 - A) in one place, as k + s c, and so linearly: three matrices per point are enough.
-    """
-    envelope, margin = study.envelope, study.required.stability_margin
-    speeds = np.geomspace(envelope.speed.min, envelope.speed.max, 24)
-    points = [(V, F_z) for F_z in envelope.loads for V in speeds] + list(worst)
-    V, F_z = np.array(points).T
-
-    def polynomial(stiffness: float, damping: float) -> np.ndarray:
-        plain = Damper(topology="rotational", torsional_stiffness=stiffness, torsional_damping=damping)
-        A = linear_gear(study.replace(damper=plain)).matrices(V, F_z)
-        n = A.shape[-1]
-        a = characteristic_polynomial(A, np.eye(n), lambda M: np.trace(M, axis1=1, axis2=2)[:, None, None], n)
-        return np.array([np.broadcast_to(np.ravel(a_i), V.shape) for a_i in a])
-
-    k_scale, c_scale = 1e5, 1e3
-    base = polynomial(0.0, 0.0)
-    per_k, per_c = (polynomial(k_scale, 0.0) - base) / k_scale, (polynomial(0.0, c_scale) - base) / c_scale
-    least = np.full(k.size, np.inf)
-    for j in range(V.size):
-        a = [base[i, j] + per_k[i, j] * k + per_c[i, j] * c for i in range(len(base))]
-        for condition in lienard_chipart(shifted(a, margin)).values():
-            least = np.minimum(least, condition / np.median(np.abs(condition)))
-    return least

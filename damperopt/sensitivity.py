@@ -31,22 +31,18 @@ def sensitivities(problem: DesignProblem, solution: LocalSolution) -> tuple[Sens
     first-order effect; at an end of the range it has, and that is the sensitivity to the end.
     """
     study, points = problem.study, solution.points
-    n = len(problem.data_names)
-    slots = (len(solution.data_gradient) - n - 1) // 3
-    gradient = solution.data_gradient
-    by_speed, by_load = gradient[n + 1 :][: len(points)], gradient[n + 1 + slots :][: len(points)]
     found = [
         (name, float(value), unit_of(study, name), float(slope))
-        for name, value, slope in zip(problem.data_names, problem.data, gradient[:n], strict=True)
+        for name, value, slope in zip(problem.data_names, problem.data, solution.data_gradient, strict=True)
     ]
     for end in ("min", "max"):
         speed = getattr(study.envelope.speed, end)
-        slope = sum(d for d, point in zip(by_speed, points, strict=True) if point[0] == speed)
+        slope = sum(d for d, point in zip(solution.point_gradient[:, 0], points, strict=True) if point[0] == speed)
         found.append((f"envelope.speed.{end}", speed, "m/s", float(slope)))
     names = ("min", "max") if study.envelope.load_is_range else range(len(study.envelope.loads))
     for name, load in zip(names, study.envelope.loads, strict=True):
-        slope = sum(d for d, point in zip(by_load, points, strict=True) if point[1] == load)
-        slope += gradient[n] if load == problem.load_limit else 0.0
+        slope = sum(d for d, point in zip(solution.point_gradient[:, 1], points, strict=True) if point[1] == load)
+        slope += solution.load_limit_gradient if load == problem.load_limit else 0.0
         single = len(study.envelope.loads) == 1
         found.append(("envelope.vertical_load" + ("" if single else f".{name}"), load, "N", float(slope)))
     results = [

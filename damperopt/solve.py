@@ -44,8 +44,11 @@ class LocalSolution:
     row_multipliers, bound_multipliers : ndarray
         Of the strength and geometry rows (>= 0) and of the bounds of the scaled variables (positive at an upper bound).
     data_gradient : ndarray
-        Derivative of the optimal mass with respect to the program's parameters (envelope theorem): data, load limit,
-        speeds and loads of the slots, and scales, which it does not depend on.
+        Derivative of the optimal objective with respect to the study's numbers, by the envelope theorem (its Lagrangian's).
+    load_limit_gradient : float
+        The same with respect to the load of the limit event.
+    point_gradient : ndarray
+        (m, 2) the same with respect to the speeds and loads of `points`.
     kkt_residual : float
         Largest of |grad L|, complementarity and violation, recomputed from the derivatives (not IPOPT's own figure).
     points : tuple of (speed, load)
@@ -63,6 +66,8 @@ class LocalSolution:
     row_multipliers: np.ndarray
     bound_multipliers: np.ndarray
     data_gradient: np.ndarray
+    load_limit_gradient: float
+    point_gradient: np.ndarray
     kkt_residual: float
     points: tuple[tuple[float, float], ...]
     form: str
@@ -110,7 +115,9 @@ class NlpSolver:
         stats = built.solver.stats()
         x, g, lam_g, lam_x = (result[key].full().ravel() for key in ("x", "g", "lam_g", "lam_x"))
         rows = len(self.problem.constraints)
-        variables = len(self.problem.variables)
+        variables, data = len(self.problem.variables), len(self.problem.data)
+        # parameters: data, load limit, speeds and loads of the slots, scales (see Program)
+        by_parameter = built.parameter_gradient(x, it.p, lam_g).full().ravel()
         violation = max(np.max(g - it.ubg), np.max(it.lbg - g), 0.0)
         return LocalSolution(
             converged=bool(stats["success"]) and violation <= 1e-6,
@@ -120,7 +127,9 @@ class NlpSolver:
             extra=x[variables:],
             row_multipliers=lam_g[:rows],
             bound_multipliers=lam_x[:variables],
-            data_gradient=built.data_gradient(x, it.p, lam_g).full().ravel(),
+            data_gradient=by_parameter[:data],
+            load_limit_gradient=float(by_parameter[data]),
+            point_gradient=by_parameter[data + 1 : data + 1 + 2 * built.slots].reshape(2, -1)[:, : len(points)].T,
             kkt_residual=_kkt_residual(built, it, x, g, lam_g, lam_x),
             points=tuple(points),
             form=form.__name__,
@@ -139,7 +148,8 @@ class NlpSolver:
                 program,
                 ca.nlpsol("design", "ipopt", nlp, options),
                 ca.Function("stationarity", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["x"])]),
-                ca.Function("data_gradient", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["p"])]),
+                ca.Function("parameter_gradient", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["p"])]),
+                slots,
             )
         return self._built[form, slots]
 
@@ -149,7 +159,8 @@ class _Built:
     program: Program
     solver: ca.Function
     stationarity: ca.Function
-    data_gradient: ca.Function
+    parameter_gradient: ca.Function
+    slots: int
 
 
 def _kkt_residual(built: _Built, it: Instance, x: np.ndarray, g: np.ndarray, lam_g: np.ndarray, lam_x: np.ndarray) -> float:

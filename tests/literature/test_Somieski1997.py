@@ -36,9 +36,7 @@ def nose_gear(main_gear):
 
 
 def twin(c_psi):
-    return parameters(
-        law="linear", k_psi=1e5, c_psi=c_psi, C_F=20.0, C_M=2.0, kappa=270.0, sigma=0.3, a=0.1, e=0.1, I_z=1.0
-    )  # fmt: skip
+    return parameters(law="linear", k_psi=1e5, c_psi=c_psi, C_F=20.0, C_M=2.0, kappa=270.0, sigma=0.3, a=0.1, e=0.1, I_z=1.0)
 
 
 @pytest.mark.parametrize(("c_psi", "speed"), CRITICAL_SPEEDS)

@@ -357,7 +357,7 @@ def _local_optima(solved: list[EnvelopeSolution]) -> tuple[LocalOptimum, ...]:
 
 def _infeasible_message(shortfalls: Sequence[Relaxation], alone: Sequence[Relaxation]) -> str:
     missing = "; ".join(_short(r) for r in shortfalls)
-    text = f"no design meets the requirements. Least shortfall: {missing}."
+    text = f"no design was found that meets the requirements. Nearest: {missing}."
     if alone:
         text += " Enough on its own: " + "; or ".join(_enough(r) for r in alone) + "."
     return text

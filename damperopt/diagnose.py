@@ -7,15 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .exchange import MAX_ROUNDS, first_points
-from .program import ElasticProgram
+from .exchange import first_points
+from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program
 from .results import Infeasibility, Relaxation
+from .scan import steady_designs
 from .solve import NlpSolver
-from .stability import worst_points
+from .stability import OperatingPoint, worst_points
 
 __all__ = ["Diagnosis", "diagnose"]
 
 _STABILITY = "stability_margin"
+
+STEADY = 2
+"""Layouts of the steadiest kind to start from."""
+
+ENOUGH = 1e-6
+"""Slack (logarithmic, in m, or in 1/s) that counts as none."""
+
+ROUNDS = 8
 
 
 @dataclass(frozen=True)
@@ -42,52 +51,83 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
     ----------
     solver : NlpSolver
     starts : sequence of mapping
-        Designs to start from; the best outcome counts.
+        Designs to start from, beside the steadiest layouts; the best outcome counts.
 
     Returns
     -------
     Diagnosis
-        With neither a design nor reasons if the elastic program failed from every start.
+
+    Notes
+    -----
+    Every relaxation that is reported belongs to a design whose rows and worst abscissa were evaluated, whether or not IPOPT
+    converged to it: it is enough. That no smaller one exists is not proved.
     """
-    least = _least(solver, starts, None)
+    starts = [*steady_designs(solver.problem, STEADY), *starts]
+    everything = (*solver.problem.constraint_names, _STABILITY)
+    least = _least(solver, starts, everything)
     if least is None:
         return Diagnosis(None, None)
-    if max(least.slacks.values()) < 1e-7:
+    if max(least.slacks.values()) < ENOUGH:
         return Diagnosis(least.design, None)
-    short = [name for name, slack in least.slacks.items() if slack > 1e-6]
-    alone = []
-    for name in least.slacks:
-        found = _least(solver, [least.design, *starts[:2]], [name])
-        if found is not None:
-            alone.append(_relaxation(solver, found, name))
-    shortfalls = tuple(_relaxation(solver, least, name) for name in short)
-    return Diagnosis(None, Infeasibility(shortfalls=shortfalls, alone_enough=tuple(alone)))
+    found = {name: _least(solver, [least.design, *starts[: STEADY + 1]], (name,)) for name in everything}
+    alone = {name: elastic for name, elastic in found.items() if elastic is not None}
+    # the elastic program has local optima: one relaxation alone may turn out cheaper than what it found for all
+    least = min([least, *alone.values()], key=lambda elastic: elastic.price)
+    short = [name for name, slack in least.slacks.items() if slack > ENOUGH]
+    return Diagnosis(
+        None,
+        Infeasibility(
+            shortfalls=tuple(_relaxation(solver, least, name) for name in short),
+            alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in alone.items()),
+        ),
+    )
 
 
-def _least(solver: NlpSolver, starts: Sequence[Mapping[str, float]], relaxed: list[str] | None) -> _Elastic | None:
-    found = [elastic for elastic in (_elastic(solver, start, relaxed) for start in starts) if elastic is not None]
+def _least(solver: NlpSolver, starts: Sequence[Mapping[str, float]], relaxed: Sequence[str]) -> _Elastic | None:
+    """Cheapest outcome over the starts and both programs; a second program runs only where the first fails."""
+    found: list[_Elastic] = []
+    for start in starts:
+        for form in (ElasticHurwitzProgram, ElasticFactorProgram):
+            outcomes, converged = _elastic(solver, start, relaxed, form)
+            found += outcomes
+            if converged:
+                break
     return min(found, key=lambda elastic: elastic.price, default=None)
 
 
-def _elastic(solver: NlpSolver, start: Mapping[str, float], relaxed: list[str] | None) -> _Elastic | None:
-    """Local solution of the elastic program, exchanged over the envelope."""
+def _elastic(
+    solver: NlpSolver, start: Mapping[str, float], relaxed: Sequence[str], form: type[Program]
+) -> tuple[list[_Elastic], bool]:
+    """Designs on the way of the elastic program that need no other relaxation, and whether it converged."""
     problem = solver.problem
-    study, required = problem.study, problem.study.required.stability_margin
     points, design = first_points(solver), dict(start)
-    for _ in range(MAX_ROUNDS):
-        solution = solver.solve(design, points, ElasticProgram, relaxed=relaxed)
-        if not solution.converged:
-            return None
-        *slack, margin = solution.extra
-        worst = worst_points(problem.model.at(solution.design), study.envelope)
-        violating = [p for p in worst if p.abscissa > -margin - study.solver.margin_reserve / 2]
-        if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
-            slacks = dict(zip(problem.constraint_names, map(float, slack), strict=True))
-            slacks[_STABILITY] = float(required - margin)
-            return _Elastic(solution.objective, solution.design, slacks, worst[0].speed, worst[0].load)
-        points += [(p.speed, p.load) for p in violating]
+    outcomes = []
+    for _ in range(ROUNDS):
+        solution = solver.solve(design, points, form, relaxed=relaxed)
         design = solution.design
-    return None
+        worst = worst_points(problem.model.at(design), problem.study.envelope)
+        outcome = _outcome(solver, design, worst[0])
+        if all(slack <= ENOUGH or name in relaxed for name, slack in outcome.slacks.items()):
+            outcomes.append(outcome)
+        if not solution.converged:
+            return outcomes, False
+        margin = solution.extra[len(problem.constraints)]
+        violating = [p for p in worst if p.abscissa > -margin - problem.study.solver.margin_reserve / 2]
+        if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
+            return outcomes, True
+        points += [(p.speed, p.load) for p in violating]
+    return outcomes, False
+
+
+def _outcome(solver: NlpSolver, design: dict[str, float], worst: OperatingPoint) -> _Elastic:
+    """What a design would need to be relaxed, and at what price (that of the elastic program)."""
+    problem = solver.problem
+    required = problem.study.required.stability_margin
+    slacks = {name: max(row, 0.0) for name, row in problem.rows(design).items()}
+    price = sum((1 if c.ratio else 10) * slacks[c.name] for c in problem.constraints)
+    slacks[_STABILITY] = max(required + worst.abscissa, 0.0)
+    price += slacks[_STABILITY] / max(required, 0.1)
+    return _Elastic(price, design, slacks, worst.speed, worst.load)
 
 
 def _relaxation(solver: NlpSolver, elastic: _Elastic, name: str) -> Relaxation:

@@ -1,12 +1,15 @@
-"""Nonlinear programs of a design problem: two ways to say "stable with the margin at these speeds and loads".
+"""Nonlinear programs of a design problem: for least mass, and for the least relaxation under which a design exists.
 
-Both have slots, each a speed and a load given as parameters, so that one program serves every round of the exchange.
+Each comes with two ways to say "stable with the margin at these speeds and loads":
 
-* `HurwitzProgram` imposes the Lienard-Chipart conditions of the shifted characteristic polynomial. It finds the best
-  basin most often, but where two modes sit on the margin at once the last Hurwitz determinant, the product of their two
-  dampings, has no gradient and the program no constraint qualification.
-* `FactorProgram` lifts: the shifted polynomial equals a product of factors s^2 + b s + c and s + r with b, c, r >= 0.
-  It is regular at such corners, but stops where a real root passes from one factor to another.
+* Hurwitz: the Lienard-Chipart conditions of the shifted characteristic polynomial. It finds the best basin most often, but
+  where two modes sit on the margin at once the last Hurwitz determinant, the product of their two dampings, has no gradient
+  and the program no constraint qualification.
+* Factors: the shifted polynomial equals a product of factors s^2 + b s + c and s + r with b, c, r >= 0. Regular at such
+  corners, but it stops where a real root passes from one factor to another.
+
+Stability is imposed at slots, each a speed and a load given as parameters, so that one program serves every round of the
+exchange; slots without a point impose nothing.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import casadi as ca
 import numpy as np
@@ -22,7 +25,16 @@ import numpy as np
 from .hurwitz import characteristic_polynomial, lienard_chipart
 from .problem import DesignProblem
 
-__all__ = ["ElasticProgram", "FactorProgram", "HurwitzProgram", "Instance", "Program"]
+__all__ = [
+    "ElasticFactorProgram",
+    "ElasticHurwitzProgram",
+    "FactorProgram",
+    "HurwitzProgram",
+    "Instance",
+    "Program",
+]
+
+Points = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -51,11 +63,11 @@ class Program(Protocol):
 
     def __init__(self, problem: DesignProblem, slots: int): ...
 
-    def instance(self, design: Mapping[str, float], points: Sequence[tuple[float, float]]) -> Instance: ...
+    def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance: ...
 
 
 class _Slots:
-    """What both programs share: variables, parameters, the rows of strength and geometry."""
+    """Variables, parameters, mass, strength and geometry rows, and the shifted polynomial at every slot."""
 
     def __init__(self, problem: DesignProblem, slots: int, margin: ca.SX | None = None):
         self.problem, self.slots, self.order = problem, slots, len(problem.model.state_names)
@@ -77,66 +89,39 @@ class _Slots:
             for i in range(slots)
         ]
 
-    def numbers(self, design: Mapping[str, float], points: Sequence[tuple[float, float]]):
-        """Common parameters, and per slot the shifted roots at `design` with the rate that scales them to about 1."""
+    def numbers(
+        self, design: Mapping[str, float], points: Points, margin: float | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Common parameters; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem
         filled = [*points, *[points[-1]] * (self.slots - len(points))]
         V, F_z = np.array(filled).T
-        required = problem.study.required.stability_margin + problem.study.solver.margin_reserve
-        roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + required
+        shift = problem.study.solver.margin_reserve
+        shift += problem.study.required.stability_margin if margin is None else margin
+        roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + shift
         rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
         return np.concatenate([problem.data, [problem.load_limit], V, F_z, rates]), roots, rates
 
 
-class HurwitzProgram:
-    """Lienard-Chipart conditions at every slot.
+class _HurwitzConditions:
+    """Lienard-Chipart conditions of all slots as rows <= 0; no variables of its own, one weight per slot."""
 
-    Parameters
-    ----------
-    problem : DesignProblem
-    slots : int
-        Number of (speed, load) points it has room for.
-    """
+    def __init__(self, common: _Slots):
+        weight = ca.SX.sym("weight", common.slots)
+        last = f"H{common.order - 1}"
+        conditions = [lienard_chipart(a) for a in common.polynomials]
+        self.variables, self.parameters = ca.SX(0, 1), weight
+        self.rows = ca.vertcat(
+            *(-value * (weight[i] if name == last else 1) for i, slot in enumerate(conditions) for name, value in slot.items())
+        )
+        self._per_slot = len(conditions[0])
 
-    def __init__(self, problem: DesignProblem, slots: int):
-        self._common = common = _Slots(problem, slots)
-        weight = ca.SX.sym("weight", slots)
-        self._stability = _hurwitz_rows(common, weight)
-        self.nlp = {
-            "x": common.x,
-            "p": ca.vertcat(common.p, weight),
-            "f": common.mass,
-            "g": ca.vertcat(common.rows, self._stability),
-        }
-
-    def instance(self, design: Mapping[str, float], points: Sequence[tuple[float, float]]) -> Instance:
-        """The program at `points`, started and scaled at `design`; slots without a point impose nothing."""
-        common, problem = self._common, self._common.problem
-        p, roots, rates = common.numbers(design, points)
-        lower, upper = problem.bounds()
-        limits = _limits(self.nlp["g"], self._stability, common.slots, len(points))
-        x0 = np.clip(problem.scaled(design), lower, upper)
-        return Instance(x0, lower, upper, np.full(len(limits), -np.inf), limits, np.concatenate([p, _weights(roots, rates)]))
-
-
-def _hurwitz_rows(common: _Slots, weight: ca.SX) -> ca.SX:
-    """Lienard-Chipart conditions of all slots as rows <= 0."""
-    last = f"H{common.order - 1}"
-    conditions = (lienard_chipart(a) for a in common.polynomials)
-    return ca.vertcat(
-        *(-value * (weight[i] if name == last else 1) for i, slot in enumerate(conditions) for name, value in slot.items())
-    )
-
-
-def _limits(g: ca.SX, stability: ca.SX, slots: int, used: int) -> np.ndarray:
-    """Upper limits of the rows: 0, and none for the stability rows of unused slots."""
-    limits = np.zeros(g.numel())
-    limits[limits.size - (slots - used) * (stability.numel() // slots) :] = np.inf
-    return limits
-
-
-def _weights(roots: np.ndarray, rates: np.ndarray) -> list[float]:
-    return [_damping_weight(r, rate) for r, rate in zip(roots, rates, strict=True)]
+    def instance(self, roots: np.ndarray, rates: np.ndarray, used: int) -> Instance:
+        limits = np.zeros(self.rows.numel())
+        limits[used * self._per_slot :] = np.inf
+        nothing = np.zeros(0)
+        weights = np.array([_damping_weight(r, rate) for r, rate in zip(roots, rates, strict=True)])
+        return Instance(nothing, nothing, nothing, np.full(limits.size, -np.inf), limits, weights)
 
 
 def _damping_weight(roots: np.ndarray, rate: float) -> float:
@@ -148,101 +133,27 @@ def _damping_weight(roots: np.ndarray, rate: float) -> float:
     return float(rate ** conjugate.sum() / np.prod(np.abs(sums[~conjugate]) / rate + 1e-6))
 
 
-class FactorProgram:
-    """Shifted characteristic polynomial = product of stable factors, at every slot.
+class _StableFactors:
+    """Shifted polynomial = product of factors with variables b [1/s], c/rate^2, ..., r/rate >= 0 at every slot."""
 
-    Parameters
-    ----------
-    problem : DesignProblem
-    slots : int
-        Number of (speed, load) points it has room for.
-    """
-
-    def __init__(self, problem: DesignProblem, slots: int):
-        self._common = common = _Slots(problem, slots)
+    def __init__(self, common: _Slots):
         n = common.order
-        lifted = ca.SX.sym("lifted", n, slots)  # per slot b [1/s], c/rate^2, ..., r/rate
+        lifted = ca.SX.sym("lifted", n, common.slots)
         equalities = []
         for i, a in enumerate(common.polynomials):
             pairs = [[1, lifted[2 * k, i] / common.rate[i], lifted[2 * k + 1, i]] for k in range(n // 2)]
             single = [[1, lifted[n - 1, i]]] if n % 2 else []
             product = reduce(_multiply, pairs + single)
             equalities += [product[k] - a[k] for k in range(1, n + 1)]
-        self.nlp = {
-            "x": ca.vertcat(common.x, ca.vec(lifted)),
-            "p": common.p,
-            "f": common.mass,
-            "g": ca.vertcat(common.rows, *equalities),
-        }
+        self.variables, self.parameters = ca.vec(lifted), ca.SX(0, 1)
+        self.rows = ca.vertcat(*equalities)
+        self._per_slot = n
 
-    def instance(self, design: Mapping[str, float], points: Sequence[tuple[float, float]]) -> Instance:
-        """The program at `points`, its factors started at the roots of `design`; slots without a point are free."""
-        common, problem = self._common, self._common.problem
-        p, roots, rates = common.numbers(design, points)
-        lower, upper = problem.bounds()
+    def instance(self, roots: np.ndarray, rates: np.ndarray, used: int) -> Instance:
         factors = np.concatenate([_factors(r, rate) for r, rate in zip(roots, rates, strict=True)])
-        used = np.arange(factors.size) < len(points) * common.order
+        lower = np.where(np.arange(factors.size) < used * self._per_slot, 0.0, -np.inf)
         equal = np.zeros(factors.size)
-        return Instance(
-            np.concatenate([np.clip(problem.scaled(design), lower, upper), factors]),
-            np.concatenate([lower, np.where(used, 0.0, -np.inf)]),
-            np.concatenate([upper, np.full(factors.size, np.inf)]),
-            np.concatenate([np.full(common.rows.numel(), -np.inf), equal]),
-            np.concatenate([np.zeros(common.rows.numel()), equal]),
-            p,
-        )
-
-
-class ElasticProgram:
-    """Least relaxation under which a design exists: strength and geometry rows and the margin may give way.
-
-    The objective is the sum of the slacks: logarithmic ratios, lengths over 0.1 m, and the loss of margin over the margin
-    (or 0.1 1/s if that is larger). Which of them may move is set at each instance.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-    slots : int
-        Number of (speed, load) points it has room for.
-    """
-
-    def __init__(self, problem: DesignProblem, slots: int):
-        margin, weight = ca.SX.sym("margin"), ca.SX.sym("weight", slots)
-        self._common = common = _Slots(problem, slots, margin)
-        self._margin = problem.study.required.stability_margin
-        slack = ca.SX.sym("slack", common.rows.numel())
-        prices = ca.DM([1.0 if c.ratio else 10.0 for c in problem.constraints])
-        self._stability = _hurwitz_rows(common, weight)
-        self.nlp = {
-            "x": ca.vertcat(common.x, slack, margin),
-            "p": ca.vertcat(common.p, weight),
-            "f": ca.dot(prices, slack) + (self._margin - margin) / max(self._margin, 0.1),
-            "g": ca.vertcat(common.rows - slack, self._stability),
-        }
-        self.relaxable = (*problem.constraint_names, "stability_margin")
-
-    def instance(
-        self, design: Mapping[str, float], points: Sequence[tuple[float, float]], relaxed: Sequence[str] | None = None
-    ) -> Instance:
-        """The program at `points`, started at `design`; only the constraints named in `relaxed` may give way (None: all)."""
-        common, problem = self._common, self._common.problem
-        p, roots, rates = common.numbers(design, points)
-        lower, upper = problem.bounds()
-        may_move = np.array([relaxed is None or name in relaxed for name in self.relaxable])
-        slack = np.maximum(list(problem.rows(design).values()), 0.0) + 1e-3
-        abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
-        reserve = problem.study.solver.margin_reserve
-        start = np.append(slack, min(self._margin, -abscissa - 2 * reserve))
-        start = np.where(may_move, start, np.append(np.zeros(slack.size), self._margin))
-        limits = _limits(self.nlp["g"], self._stability, common.slots, len(points))
-        return Instance(
-            np.concatenate([np.clip(problem.scaled(design), lower, upper), start]),
-            np.concatenate([lower, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin]]),
-            np.concatenate([upper, np.where(may_move[:-1], np.inf, 0.0), [self._margin]]),
-            np.full(len(limits), -np.inf),
-            limits,
-            np.concatenate([p, _weights(roots, rates)]),
-        )
+        return Instance(factors, lower, np.full(factors.size, np.inf), equal, equal, np.zeros(0))
 
 
 def _multiply(p: list[Any], q: list[Any]) -> list[Any]:
@@ -262,3 +173,115 @@ def _factors(roots: np.ndarray, rate: float) -> list[float]:
     pairs += [(-(s + t), s * t) for s, t in zip(fast_to_slow[::2], fast_to_slow[1::2], strict=True)]
     ordered = sorted(pairs, key=lambda pair: pair[1])
     return [number for b, c in ordered for number in (b, c / rate**2)] + [-s / rate for s in single]
+
+
+class _MassProgram:
+    """Least mass under the strength and geometry rows and the stability conditions.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    slots : int
+        Number of (speed, load) points it has room for.
+    """
+
+    stability_type: ClassVar[type]
+
+    def __init__(self, problem: DesignProblem, slots: int):
+        self._common = common = _Slots(problem, slots)
+        self._stability = stability = self.stability_type(common)
+        self.nlp = {
+            "x": ca.vertcat(common.x, stability.variables),
+            "p": ca.vertcat(common.p, stability.parameters),
+            "f": common.mass,
+            "g": ca.vertcat(common.rows, stability.rows),
+        }
+
+    def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance:
+        """The program at `points`, started and scaled at `design`; it has no options."""
+        problem, rows = self._common.problem, self._common.rows.numel()
+        p, roots, rates = self._common.numbers(design, points)
+        lower, upper = problem.bounds()
+        x0 = np.clip(problem.scaled(design), lower, upper)
+        own = Instance(x0, lower, upper, np.full(rows, -np.inf), np.zeros(rows), p)
+        return _joined(own, self._stability.instance(roots, rates, len(points)))
+
+
+def _joined(first: Instance, second: Instance) -> Instance:
+    return Instance(*(np.concatenate([getattr(first, key), getattr(second, key)]) for key in Instance.__annotations__))
+
+
+class HurwitzProgram(_MassProgram):
+    """Least mass; stability by Lienard-Chipart conditions."""
+
+    stability_type = _HurwitzConditions
+
+
+class FactorProgram(_MassProgram):
+    """Least mass; stability by factors."""
+
+    stability_type = _StableFactors
+
+
+class _ElasticProgram:
+    """Least relaxation under which a design exists: strength and geometry rows and the margin may give way.
+
+    The objective is the sum of the slacks: logarithmic ratios, lengths over 0.1 m, and the loss of margin over the margin
+    (or 0.1 1/s if that is larger). Which of them may move is set at each instance. The variables after those of the design
+    are the slacks and the margin.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    slots : int
+        Number of (speed, load) points it has room for.
+    """
+
+    stability_type: ClassVar[type]
+
+    def __init__(self, problem: DesignProblem, slots: int):
+        margin = ca.SX.sym("margin")
+        self._common = common = _Slots(problem, slots, margin)
+        self._stability = stability = self.stability_type(common)
+        self._margin = required = problem.study.required.stability_margin
+        self._names = (*problem.constraint_names, "stability_margin")
+        slack = ca.SX.sym("slack", common.rows.numel())
+        prices = ca.DM([1.0 if c.ratio else 10.0 for c in problem.constraints])
+        self.nlp = {
+            "x": ca.vertcat(common.x, slack, margin, stability.variables),
+            "p": ca.vertcat(common.p, stability.parameters),
+            "f": ca.dot(prices, slack) + (required - margin) / max(required, 0.1),
+            "g": ca.vertcat(common.rows - slack, stability.rows),
+        }
+
+    def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance:
+        """The program at `points`, started at `design`; the constraints named in the option `relaxed` may give way."""
+        common, problem = self._common, self._common.problem
+        may_move = np.array([name in options["relaxed"] for name in self._names])
+        slack = np.maximum(list(problem.rows(design).values()), 0.0) + 1e-3
+        abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
+        kept = min(self._margin, -abscissa - 2 * problem.study.solver.margin_reserve)
+        start = np.where(may_move, np.append(slack, kept), np.append(np.zeros(slack.size), self._margin))
+        p, roots, rates = common.numbers(design, points, margin=float(start[-1]))
+        lower, upper = problem.bounds()
+        own = Instance(
+            np.concatenate([np.clip(problem.scaled(design), lower, upper), start]),
+            np.concatenate([lower, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin]]),
+            np.concatenate([upper, np.where(may_move[:-1], np.inf, 0.0), [self._margin]]),
+            np.full(slack.size, -np.inf),
+            np.zeros(slack.size),
+            p,
+        )
+        return _joined(own, self._stability.instance(roots, rates, len(points)))
+
+
+class ElasticHurwitzProgram(_ElasticProgram):
+    """Least relaxation; stability by Lienard-Chipart conditions."""
+
+    stability_type = _HurwitzConditions
+
+
+class ElasticFactorProgram(_ElasticProgram):
+    """Least relaxation; stability by factors."""
+
+    stability_type = _StableFactors

@@ -15,9 +15,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from .problem import DesignProblem
-from .screening import least_conditions
+from .screening import least_conditions, worst_abscissae
 
-__all__ = ["ScanPoint", "promising_designs", "sobol_designs", "stiffness_scan"]
+__all__ = ["ScanPoint", "promising_designs", "sobol_designs", "steady_designs", "stiffness_scan"]
 
 SAMPLE = 1024
 """Sobol designs that show which stiffnesses and dampings the bounds allow; a power of two."""
@@ -74,46 +74,90 @@ def stiffness_scan(problem: DesignProblem) -> list[ScanPoint]:
     list of ScanPoint
         Ascending in stiffness; stiffnesses where nothing is stable or no layout meets strength and geometry are left out.
     """
-    designs = sobol_designs(problem, SAMPLE)
-    found = problem.over_designs(designs)
-    nearly = np.argsort(np.maximum(found["rows"], 0).sum(axis=1))[: SAMPLE // 4]
-    k = np.geomspace(found["torsional_stiffness"][nearly].min(), found["torsional_stiffness"][nearly].max(), STIFFNESSES)
-    c = np.geomspace(found["torsional_damping"].min(), found["torsional_damping"].max(), DAMPINGS)
+    k, c, start = _reachable(problem)
     K, C = np.meshgrid(k, c, indexing="ij")
     stable = least_conditions(problem.study, K.ravel(), C.ravel()).reshape(K.shape) > 0
-
-    solver, lower, upper = _layout_solver(problem)
-    limits = np.zeros(len(problem.constraints) + 2)
-    x = problem.scaled(dict(zip(problem.design_names, designs[nearly[0]], strict=True)))
-    points = []
+    layouts, points = _Layouts(problem, start), []
     for i in np.flatnonzero(stable.any(axis=1)):
-        c_psi = c[int(stable[i].argmax())]
-        p = np.concatenate([problem.data, [problem.load_limit, np.log(k[i]), np.log(c_psi)]])
-        lbg = np.append(np.full(limits.size - 1, -np.inf), 0.0)
-        result = solver(x0=np.clip(x, lower, upper), p=p, lbx=lower, ubx=upper, lbg=lbg, ubg=limits)
-        if solver.stats()["success"]:
-            x = result["x"].full().ravel()  # the next stiffness starts here
-            points.append(ScanPoint(float(k[i]), float(c_psi), float(result["f"]), problem.unscaled(x)))
+        point = layouts.lightest(k[i], c[int(stable[i].argmax())])
+        if point is not None:
+            points.append(point)
     return points
 
 
-def _layout_solver(problem: DesignProblem) -> tuple[ca.Function, np.ndarray, np.ndarray]:
-    """IPOPT for the lightest layout of given stiffness and damping, stability left aside."""
-    x = ca.SX.sym("x", len(problem.variables))
-    physical = problem.physical(x)
-    data, load = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
-    log_k, log_c = ca.SX.sym("log_k"), ca.SX.sym("log_c")
-    mass, rows = problem.mass_and_rows(physical[:-1], physical[-1], data, load)
-    k_psi, c_psi = problem.stiffness_and_damping(physical[:-1], data, load)
-    nlp = {
-        "x": x,
-        "p": ca.vertcat(data, load, log_k, log_c),
-        "f": mass,
-        "g": ca.vertcat(rows, log_c - ca.log(c_psi), ca.log(k_psi) - log_k),
-    }
-    options: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
-    options |= {"ipopt.max_iter": 60, "ipopt.tol": 1e-5}
-    return ca.nlpsol("layout", "ipopt", nlp, options), *problem.bounds()
+def steady_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]:
+    """Layouts that are as stable as strength and geometry allow, whatever their mass: starts where the margin is the issue.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    count : int
+
+    Returns
+    -------
+    list of dict
+        At most `count` designs, the steadiest first, each in another stiffness of the grid.
+    """
+    k, c, start = _reachable(problem)
+    K, C = np.meshgrid(k, c, indexing="ij")
+    abscissa = worst_abscissae(problem.study, K.ravel(), C.ravel()).reshape(K.shape)
+    layouts, designs = _Layouts(problem, start), []
+    for i in np.argsort(abscissa.min(axis=1)):
+        point = layouts.lightest(k[i], c[int(abscissa[i].argmin())])
+        if point is not None:
+            designs.append(point.design)
+        if len(designs) == count:
+            break
+    return designs
+
+
+def _reachable(problem: DesignProblem) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
+    """Stiffnesses and dampings that designs near strength and geometry have, and the nearest of these designs."""
+    designs = sobol_designs(problem, SAMPLE)
+    found = problem.over_designs(designs)
+    nearly = np.argsort(np.maximum(found["rows"], 0).sum(axis=1))[: SAMPLE // 4]
+    k_psi, c_psi = found["torsional_stiffness"][nearly], found["torsional_damping"]
+    return (
+        np.geomspace(k_psi.min(), k_psi.max(), STIFFNESSES),
+        np.geomspace(c_psi.min(), c_psi.max(), DAMPINGS),
+        dict(zip(problem.design_names, designs[nearly[0]].tolist(), strict=True)),
+    )
+
+
+class _Layouts:
+    """Lightest layouts of given stiffness and damping, stability left aside; each search starts at the last answer."""
+
+    def __init__(self, problem: DesignProblem, start: dict[str, float]):
+        x = ca.SX.sym("x", len(problem.variables))
+        physical = problem.physical(x)
+        data, load = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
+        log_k, log_c = ca.SX.sym("log_k"), ca.SX.sym("log_c")
+        mass, rows = problem.mass_and_rows(physical[:-1], physical[-1], data, load)
+        k_psi, c_psi = problem.stiffness_and_damping(physical[:-1], data, load)
+        nlp = {
+            "x": x,
+            "p": ca.vertcat(data, load, log_k, log_c),
+            "f": mass,
+            "g": ca.vertcat(rows, log_c - ca.log(c_psi), ca.log(k_psi) - log_k),
+        }
+        options: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
+        options |= {"ipopt.max_iter": 60, "ipopt.tol": 1e-5}
+        self._problem = problem
+        self._solver = ca.nlpsol("layout", "ipopt", nlp, options)
+        self._x = problem.scaled(start)
+        self._ubg = np.zeros(len(problem.constraints) + 2)
+        self._lbg = np.append(np.full(self._ubg.size - 1, -np.inf), 0.0)
+
+    def lightest(self, k_psi: float, c_psi: float) -> ScanPoint | None:
+        """Lightest layout with this stiffness and at least this damping; None if IPOPT finds none."""
+        lower, upper = self._problem.bounds()
+        p = np.concatenate([self._problem.data, [self._problem.load_limit, np.log(k_psi), np.log(c_psi)]])
+        x0 = np.clip(self._x, lower, upper)
+        result = self._solver(x0=x0, p=p, lbx=lower, ubx=upper, lbg=self._lbg, ubg=self._ubg)
+        if not self._solver.stats()["success"]:
+            return None
+        self._x = result["x"].full().ravel()
+        return ScanPoint(float(k_psi), float(c_psi), float(result["f"]), self._problem.unscaled(self._x.tolist()))
 
 
 def promising_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]:

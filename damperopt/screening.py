@@ -12,9 +12,9 @@ import numpy as np
 
 from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .specs import Damper, Study
-from .stability import linear_gear
+from .stability import linear_gear, spectral_abscissa
 
-__all__ = ["least_conditions"]
+__all__ = ["least_conditions", "worst_abscissae"]
 
 SPEEDS = 24
 STIFFNESS, DAMPING = 1e5, 1e3  # of the second and third matrix; any numbers of the right size
@@ -38,23 +38,60 @@ def least_conditions(
     ndarray
         (m,) least Lienard-Chipart condition, each scaled by its median size; > 0 where the margin holds at the points.
     """
-    envelope, margin = study.envelope, study.required.stability_margin
-    speeds = np.unique(np.geomspace(envelope.speed.min, envelope.speed.max, SPEEDS))
-    points = [(V, F_z) for F_z in envelope.loads for V in speeds] + list(more)
-    V, F_z = np.array(points).T
-
-    def polynomial(stiffness: float, damping: float) -> np.ndarray:
-        plain = Damper(topology="rotational", torsional_stiffness=stiffness, torsional_damping=damping)
-        A = linear_gear(study.replace(damper=plain)).matrices(V, F_z)
-        n = A.shape[-1]
-        a = characteristic_polynomial(A, np.eye(n), lambda M: np.trace(M, axis1=1, axis2=2)[:, None, None], n)
-        return np.array([np.broadcast_to(np.ravel(a_i), V.shape) for a_i in a])
-
-    base = polynomial(0.0, 0.0)
-    per_k, per_c = (polynomial(STIFFNESS, 0.0) - base) / STIFFNESS, (polynomial(0.0, DAMPING) - base) / DAMPING
+    margin = study.required.stability_margin
+    V, F_z = _points(study, SPEEDS, more)
+    base, per_k, per_c = (_polynomial(A) for A in _affine_matrices(study, V, F_z))
+    per_k, per_c = per_k - base, per_c - base
     least = np.full(k_psi.size, np.inf)
     for j in range(V.size):
-        a = [base[i, j] + per_k[i, j] * k_psi + per_c[i, j] * c_psi for i in range(len(base))]
+        a = [base[i, j] + per_k[i, j] * k_psi / STIFFNESS + per_c[i, j] * c_psi / DAMPING for i in range(len(base))]
         for condition in lienard_chipart(shifted(a, margin)).values():
             least = np.minimum(least, condition / np.median(np.abs(condition)))
     return least
+
+
+def worst_abscissae(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.ndarray:
+    """Largest spectral abscissa of each (k_psi, c_psi) over a few points of the envelope.
+
+    Parameters
+    ----------
+    study : Study
+    k_psi, c_psi : ndarray
+        (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
+
+    Returns
+    -------
+    ndarray
+        (m,) [1/s]
+    """
+    V, F_z = _points(study, SPEEDS // 3)
+    base, per_k, per_c = _affine_matrices(study, V, F_z)
+    worst = np.full(k_psi.size, -np.inf)
+    for j in range(V.size):
+        A = base[j] + np.multiply.outer(k_psi / STIFFNESS, per_k[j] - base[j])
+        A += np.multiply.outer(c_psi / DAMPING, per_c[j] - base[j])
+        worst = np.maximum(worst, spectral_abscissa(A))
+    return worst
+
+
+def _points(study: Study, speeds: int, more: Sequence[tuple[float, float]] = ()) -> tuple[np.ndarray, np.ndarray]:
+    envelope = study.envelope
+    grid = np.unique(np.geomspace(envelope.speed.min, envelope.speed.max, speeds))
+    V, F_z = np.array([(V, F_z) for F_z in envelope.loads for V in grid] + list(more)).T
+    return V, F_z
+
+
+def _affine_matrices(study: Study, V: np.ndarray, F_z: np.ndarray) -> list[np.ndarray]:
+    """State matrices without damper, with the stiffness `STIFFNESS` alone, and with the damping `DAMPING` alone."""
+    dampers = (
+        Damper(topology="rotational", torsional_stiffness=k, torsional_damping=c)
+        for k, c in ((0.0, 0.0), (STIFFNESS, 0.0), (0.0, DAMPING))
+    )
+    return [linear_gear(study.replace(damper=damper)).matrices(V, F_z) for damper in dampers]
+
+
+def _polynomial(A: np.ndarray) -> np.ndarray:
+    """Coefficients of det(s 1 - A) of stacked matrices, (n + 1, m)."""
+    n = A.shape[-1]
+    a = characteristic_polynomial(A, np.eye(n), lambda M: np.trace(M, axis1=1, axis2=2)[:, None, None], n)
+    return np.array([np.broadcast_to(np.ravel(a_i), len(A)) for a_i in a])

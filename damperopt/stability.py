@@ -9,7 +9,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.optimize import brentq, minimize_scalar
+from scipy.ndimage import maximum_filter
+from scipy.optimize import brentq, minimize, minimize_scalar
 
 from .dae import DAE
 from .dynamics import build
@@ -34,7 +35,7 @@ SPEED_DEGREE = 2
 """V times any coefficient of the characteristic polynomial is a polynomial of this degree in V (V enters the state
 matrix as V in the string row and as 1/V in the yaw row only)."""
 
-LOADS = 7
+LOADS = 9
 """Loads of the first look at a load range."""
 
 
@@ -287,26 +288,42 @@ def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, s
     -----
     At each load the maximum over speed is global: beyond the refined samples, the polynomials a_n(V) and H_(n-1)(V),
     shifted to the level found, show whether any speed lies above it; if one does, it is refined in turn (level-set
-    method, as for the H-infinity norm). Over a load range the same is repeated at loads that a bounded search picks;
-    that is not proved, `certify` is.
+    method, as for the H-infinity norm). Over a load range that holds at both ends; between them the peaks of a grid are
+    refined, which is no proof: `certify` is.
     """
-
-    def at(load: float) -> list[OperatingPoint]:
-        return _worst_at_load(gear, envelope, float(load), samples)
-
-    points = [point for load in envelope.loads for point in at(load)]
+    points = [point for load in envelope.loads for point in _worst_at_load(gear, envelope, load, samples)]
     if envelope.load_is_range and max(p.abscissa for p in points) <= enough:
-        loads = np.linspace(envelope.loads[0], envelope.loads[-1], LOADS)
-        per_load = [at(load) for load in loads]
-        height = np.array([found[0].abscissa for found in per_load])
-        points = [point for found in per_load for point in found]
-        for i in _peaks(height):
-            bracket = loads[max(i - 1, 0)], loads[min(i + 1, LOADS - 1)]
-            best = minimize_scalar(
-                lambda load: -at(load)[0].abscissa, bounds=bracket, method="bounded", options={"xatol": 1e-7 * loads[-1]}
-            )
-            points += at(best.x)
+        points += _worst_between_loads(gear, envelope, samples)
     return sorted(points, key=lambda point: -point.abscissa)
+
+
+def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> list[OperatingPoint]:
+    """Peaks of the abscissa over the rectangle of speeds and loads, from a grid."""
+    speeds = np.linspace(np.log(envelope.speed.min), np.log(envelope.speed.max), samples)
+    loads = np.linspace(envelope.loads[0], envelope.loads[-1], LOADS)
+    V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
+    height = gear.abscissa(np.exp(V), F_z).reshape(LOADS, samples)
+    corners = np.array([speeds[0], loads[0]]), np.array([speeds[-1], loads[-1]])
+    step = np.array([speeds[1] - speeds[0] if samples > 1 else 0.0, loads[1] - loads[0]])
+
+    def point(place: np.ndarray) -> OperatingPoint:
+        speed = float(np.clip(np.exp(place[0]), envelope.speed.min, envelope.speed.max))
+        return OperatingPoint(speed, float(place[1]), float(gear.abscissa(speed, place[1])[0]))
+
+    found = []
+    for i, j in np.argwhere(height >= maximum_filter(height, 3, mode="nearest")):
+        start = np.array([speeds[j], loads[i]])
+        low, high = np.maximum(start - step, corners[0]), np.minimum(start + step, corners[1])
+        width = np.where(high > low, high - low, 1.0)
+        best = minimize(
+            lambda u, low=low, width=width: -point(low + u * width).abscissa,
+            (start - low) / width,
+            method="Nelder-Mead",
+            bounds=list(zip([0.0, 0.0], (high - low) / width, strict=True)),
+            options={"xatol": 1e-6, "fatol": 1e-10, "maxfev": 300},
+        )
+        found += [point(start), point(low + best.x * width)]
+    return found
 
 
 def _peaks(height: np.ndarray) -> list[int]:

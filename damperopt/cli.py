@@ -26,8 +26,9 @@ from .materials import MATERIALS
 from .modes import ModeTable, track_modes
 from .output import run_folder, write_modes, write_ranking, write_run
 from .results import DesignResult, load_result
-from .specs import TOPOLOGIES, Study
+from .specs import Study
 from .stability import critical_speeds, linear_gear, worst_points
+from .variables import TOPOLOGIES
 
 __all__ = ["app", "main"]
 

@@ -12,7 +12,8 @@ import yaml
 from pydantic import BaseModel, ValidationError
 
 from .errors import ConfigError
-from .specs import Study, quantity_of
+from .records import quantity_of
+from .specs import Study
 
 __all__ = ["json_schema", "load", "loads"]
 

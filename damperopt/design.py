@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import platform
-import subprocess
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict
 from datetime import UTC, datetime
-from hashlib import sha256
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -21,6 +17,7 @@ from .errors import ConfigError
 from .exchange import EnvelopeSolution, best_local
 from .multistart import StartOutcome, executor, run_starts, solver_for, starting_designs
 from .problem import ROD, DesignProblem
+from .provenance import provenance_of
 from .results import (
     UNITS,
     CertificateResult,
@@ -28,7 +25,6 @@ from .results import (
     DesignResult,
     LocalOptimum,
     MassResult,
-    Provenance,
     Relaxation,
     StabilityResult,
     StartResult,
@@ -36,8 +32,9 @@ from .results import (
 )
 from .sensitivity import sensitivities
 from .solve import NlpSolver
-from .specs import TOPOLOGIES, Study
+from .specs import Study
 from .stability import worst_points
+from .variables import TOPOLOGIES
 from .verify import check_grid
 
 __all__ = ["combinations", "optimise", "optimise_each", "rank"]
@@ -92,7 +89,7 @@ def optimise(
         outcomes = run_starts(study, pool, progress)
     solver = solver_for(study.model_dump_json())
     result = _answer(study, solver, outcomes)
-    provenance = _provenance(study, config_file, started, time.perf_counter() - clock)
+    provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
     return result.model_copy(update={"provenance": provenance, "config": study.model_dump(mode="json")})
 
 
@@ -370,33 +367,3 @@ def _short(r: Relaxation) -> str:
 
 def _enough(r: Relaxation) -> str:
     return f"{r.name} of {r.needed:.4g} {r.unit} instead of {r.limit:.4g} ({', '.join(r.inputs)})"
-
-
-def _provenance(study: Study, config_file: str | Path | None, started: str, wall_time: float) -> Provenance:
-    packages = {}
-    for name in ("casadi", "numpy", "scipy", "python-flint", "pydantic"):
-        packages[name] = version(name)
-    try:
-        own = version("damperopt")
-    except PackageNotFoundError:  # run from a checkout that is not installed
-        own = "unknown"
-    text = Path(config_file).read_bytes() if config_file and Path(config_file).is_file() else study.model_dump_json().encode()
-    return Provenance(
-        damperopt=own,
-        python=platform.python_version(),
-        packages=packages,
-        config_file=str(config_file) if config_file else None,
-        config_sha256=sha256(text).hexdigest(),
-        git_commit=_git_commit(Path(config_file).parent if config_file else Path.cwd()),
-        seed=study.solver.seed,
-        started=started,
-        wall_time=wall_time,
-    )
-
-
-def _git_commit(folder: Path) -> str | None:
-    try:
-        run = subprocess.run(["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, timeout=5)
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return run.stdout.strip() if run.returncode == 0 else None

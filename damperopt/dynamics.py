@@ -16,9 +16,9 @@ import casadi as ca
 
 from .dae import DAE
 from .dampers import linkage
-from .specs import DESIGN_VARIABLES
 from .symbols import SymbolicStudy
 from .tyres import aligning_moment, side_force
+from .variables import DESIGN_VARIABLES
 
 __all__ = ["build", "effective_caster"]
 

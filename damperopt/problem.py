@@ -16,9 +16,10 @@ from .constraints import Constraint, geometry, strength
 from .dampers import linkage
 from .dynamics import build
 from .objectives import limit_event, mass_parts, rod_diameters
-from .specs import DESIGN_VARIABLES, Study
+from .specs import Study
 from .stability import LinearModel
 from .symbols import data_names, data_values, symbolic
+from .variables import DESIGN_VARIABLES
 
 __all__ = ["DesignProblem", "ScaledVariable"]
 

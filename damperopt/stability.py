@@ -161,7 +161,17 @@ def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> Line
 
 
 def spectral_abscissa(A: np.ndarray) -> np.ndarray:
-    """Largest real part of the eigenvalues of stacked matrices (..., n, n) [1/s].
+    """Largest real part of the eigenvalues of stacked matrices.
+
+    Parameters
+    ----------
+    A : ndarray
+        (..., n, n) [1/s]
+
+    Returns
+    -------
+    ndarray
+        (...) [1/s]
 
     Examples
     --------

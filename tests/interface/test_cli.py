@@ -14,6 +14,9 @@ import pytest
 import yaml
 
 import damperopt
+from damperopt.sizing import MassModel, Requirements
+from damperopt.specs import Gear
+from damperopt.variables import Solver
 
 FILES = {
     "config.yaml",
@@ -181,7 +184,7 @@ def test_schema_accepts_every_shipped_study_and_refuses_unknown_keys(configs, tm
 
 def test_starter_shows_every_key_with_its_default():
     starter = Path(damperopt.__file__).with_name("starter.yaml").read_text()
-    for record in (damperopt.specs.MassModel, damperopt.specs.Solver, damperopt.specs.Requirements, damperopt.specs.Gear):
+    for record in (MassModel, Solver, Requirements, Gear):
         for key in record.model_fields:
             assert f"{key}:" in starter, key
 

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from tolerances import QUADRATURE, ROUNDING
 
 from damperopt.sections import area, area_for_modulus, fibre_distance, section_modulus, shape_numbers
-from damperopt.specs import Section
+from damperopt.sizing import Section
 
 FAMILIES = {
     "solid_round": Section(family="solid_round"),

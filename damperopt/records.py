@@ -1,0 +1,94 @@
+"""What every record of a study is made of: the base class, the kinds of numbers with their units, ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic_core import PydanticCustomError
+
+from .units import Quantity
+
+__all__ = ["LengthRange", "LoadRange", "Range", "Record", "SpeedRange", "quantity_of", "refuse"]
+
+
+def refuse(key: str, what: str, allowed: str) -> PydanticCustomError:
+    """Error about `key` (a path below the block that is checked; empty: the block itself)."""
+    return PydanticCustomError("study", "{what}; allowed: {allowed}", {"what": what, "allowed": allowed, "key": key})
+
+
+Length = Annotated[float, Quantity("m", above=0, example="0.6 m")]
+Coordinate = Annotated[float, Quantity("m", example="120 mm")]
+Distance = Annotated[float, Quantity("m", at_least=0, example="50 mm")]
+Angle = Annotated[float, Quantity("rad", above=-1.5, below=1.5, example="9 deg")]
+AcuteAngle = Annotated[float, Quantity("rad", above=0, below=1.5707963, example="31 deg")]
+Inertia = Annotated[float, Quantity("kg m^2", above=0, example="100 kg m^2")]
+TorsionalStiffness = Annotated[float, Quantity("N m/rad", at_least=0, example="380 kN m/rad")]
+TorsionalDamping = Annotated[float, Quantity("N m s/rad", at_least=0, example="300 N m s/rad")]
+Force = Annotated[float, Quantity("N", above=0, example="150 kN")]
+Torque = Annotated[float, Quantity("N m", above=0, example="12 kN m")]
+Speed = Annotated[float, Quantity("m/s", above=0, example="120 kt")]
+Stress = Annotated[float, Quantity("Pa", above=0, example="200 GPa")]
+Density = Annotated[float, Quantity("kg/m^3", above=0, example="7850 kg/m^3")]
+Damping = Annotated[float, Quantity("N s/m", above=0, example="1e4 N s/m")]
+Stiffness = Annotated[float, Quantity("N/m", above=0, example="4 MN/m")]
+SecondMoment = Annotated[float, Quantity("m^4", above=0, example="3.4e-6 m^4")]
+Rate = Annotated[float, Quantity("1/s", at_least=0, example="0.1 1/s")]
+Number = Annotated[float, Quantity("1", above=0)]
+Fraction = Annotated[float, Quantity("1", at_least=0)]
+
+
+class Record(BaseModel):
+    """Base of all records: frozen, no unknown keys."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Range(Record):
+    """A closed interval; `min` below `max`."""
+
+    min: float
+    max: float
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.min < self.max:
+            raise refuse("", f"inverted or empty range: min {self.min:g}, max {self.max:g}", "min < max")
+        return self
+
+
+class SpeedRange(Range):
+    """Speed envelope; a single speed is allowed as min = max."""
+
+    min: Speed
+    max: Speed
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.min <= self.max:
+            raise refuse("", f"inverted range: min {self.min:g}, max {self.max:g} m/s", "min <= max")
+        return self
+
+
+class LoadRange(Range):
+    """Continuous range of the vertical load."""
+
+    min: Force
+    max: Force
+
+
+class LengthRange(Range):
+    """Range of a length."""
+
+    min: Distance
+    max: Length
+
+
+def quantity_of(annotation: Any, metadata: Sequence[Any] = ()) -> Quantity | None:
+    """What a field accepts, if it is a number with a unit; optional fields included."""
+    for note in (*metadata, *getattr(annotation, "__metadata__", ())):
+        if isinstance(note, Quantity):
+            return note
+    inner = (quantity_of(part) for part in getattr(annotation, "__args__", ()))
+    return next((quantity for quantity in inner if quantity), None)

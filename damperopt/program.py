@@ -81,12 +81,8 @@ class _Slots:
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
-        identity = ca.SX.eye(self.order)
         self.polynomials = [
-            characteristic_polynomial(
-                problem.shifted_matrix(design, data, V[i], F_z[i]) / self.rate[i], identity, ca.trace, self.order
-            )
-            for i in range(slots)
+            characteristic_polynomial(problem.shifted_matrix(design, data, V[i], F_z[i]) / self.rate[i]) for i in range(slots)
         ]
 
     def numbers(

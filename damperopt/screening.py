@@ -92,6 +92,4 @@ def _affine_matrices(study: Study, V: np.ndarray, F_z: np.ndarray) -> list[np.nd
 
 def _polynomial(A: np.ndarray) -> np.ndarray:
     """Coefficients of det(s 1 - A) of stacked matrices, (n + 1, m)."""
-    n = A.shape[-1]
-    a = characteristic_polynomial(A, np.eye(n), lambda M: np.trace(M, axis1=1, axis2=2)[:, None, None], n)
-    return np.array([np.broadcast_to(np.ravel(a_i), len(A)) for a_i in a])
+    return np.array([np.broadcast_to(a_i, len(A)) for a_i in characteristic_polynomial(A)])

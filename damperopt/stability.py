@@ -199,14 +199,10 @@ def speed_polynomials(gear: LinearGear, load: float, top_speed: float) -> list[P
     """
     v = 0.5 + 0.5 * np.cos(np.pi * (np.arange(SPEED_DEGREE + 1) + 0.5) / (SPEED_DEGREE + 1))
     A = gear.matrices(v * top_speed, load)
-    a = characteristic_polynomial(A, np.eye(A.shape[-1]), _stacked_trace, A.shape[-1])
-    samples = [np.broadcast_to(np.asarray(a_i).reshape(-1), v.shape) * v for a_i in a]
+    a = characteristic_polynomial(A)
+    samples = [a_i * v for a_i in a]
     to_coefficients = np.linalg.inv(np.vander(v, increasing=True))
     return [Polynomial(to_coefficients @ values) for values in samples]
-
-
-def _stacked_trace(M: np.ndarray) -> np.ndarray:
-    return np.trace(M, axis1=-2, axis2=-1)[..., None, None]
 
 
 def crossing_speeds(polynomials: list[Polynomial], top_speed: float, level: float, low: float, high: float) -> np.ndarray:

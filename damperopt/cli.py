@@ -28,7 +28,7 @@ from .output import run_folder, write_modes, write_ranking, write_run
 from .results import DesignResult, load_result
 from .specs import Study
 from .stability import critical_speeds, linear_gear, worst_points
-from .variables import TOPOLOGIES
+from .variables import DESIGN_VARIABLES, TOPOLOGIES
 
 __all__ = ["app", "main"]
 
@@ -155,7 +155,7 @@ def analyse(
     gear = linear_gear(study, values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
     margin = study.required.stability_margin if study.requirements else 0.0
-    low, high = study.envelope.speed.min, study.envelope.speed.max
+    low, high = float(grid[0]), float(grid[-1])
     if values is None:
         values = study.start
     summary.show_analysis(
@@ -245,12 +245,16 @@ def _draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
 
 def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
     """The study with the layout and material that the result was made for, and its design."""
-    if not result.design:
-        raise ConfigError(f"{source}:1: design: the result holds no design (status {result.status}); allowed: a solved result")
+    names = DESIGN_VARIABLES.get(result.topology, ())
+    if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):
+        raise ConfigError(
+            f"{source}:1: design: found {result.design or 'none'} (status {result.status}); "
+            f"allowed: a result with positive {', '.join(names) or 'design variables'}"
+        )
     changes = {
         "damper__topology": result.topology,
         "damper__geometry": result.geometry,
-        "material": result.config["material"],
+        "material": result.config.get("material", study.material.name),
     }
     try:
         return study.replace(**changes), result.design

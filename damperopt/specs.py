@@ -93,11 +93,25 @@ class LinearTyre(_Tyre):
 
 
 class StraightTangentTyre(_Tyre):
-    """Straight-tangent tyre: F_y = cornering_stiffness y/sigma, M_z = aligning_stiffness y/sigma, for any load."""
+    """Straight-tangent tyre: F_y = cornering_stiffness y/sigma, M_z = aligning_stiffness y/sigma, for any load.
+
+    `carcass_stiffness` (lateral, per unit length of the string) stands for both; see `tyres.straight_tangent_stiffnesses`.
+    """
 
     law: Literal["straight_tangent"]
-    cornering_stiffness: Annotated[float, Quantity("N/rad", at_least=0)]
-    aligning_stiffness: Annotated[float, Quantity("N m/rad")]
+    cornering_stiffness: Annotated[float, Quantity("N/rad", at_least=0)] | None = None
+    aligning_stiffness: Annotated[float, Quantity("N m/rad")] | None = None
+    carcass_stiffness: Annotated[float, Quantity("N/m^2", above=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        both = self.cornering_stiffness is not None and self.aligning_stiffness is not None
+        either = self.cornering_stiffness is not None or self.aligning_stiffness is not None
+        if not (both if self.carcass_stiffness is None else not either):
+            raise refuse(
+                "", "incomplete or double stiffness", "cornering_stiffness and aligning_stiffness, or carcass_stiffness alone"
+            )
+        return self
 
 
 Tyre = Annotated[StringTyre | LinearTyre | StraightTangentTyre, Field(discriminator="law")]
@@ -203,11 +217,13 @@ class Study(Record):
         if topology in TOPOLOGIES:
             if self.requirements is None:
                 raise refuse("requirements", "missing key", f"topology '{topology}' needs the block requirements")
-            if self.requirements.limit_torque is None and self.tyre.law != "nonlinear":
+            tyre = self.tyre
+            peakless = tyre.law != "nonlinear" or tyre.aligning_coefficient == tyre.cornering_coefficient == 0
+            if self.requirements.limit_torque is None and peakless:
                 raise refuse(
                     "requirements.limit_torque",
                     "missing key",
-                    f"a torque: the tyre law '{self.tyre.law}' has no peak to derive it from",
+                    f"a torque: this tyre (law '{tyre.law}') has no peak moment to derive it from",
                 )
         return self
 

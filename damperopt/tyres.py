@@ -10,7 +10,7 @@ from typing import Any
 
 import casadi as ca
 
-__all__ = ["aligning_moment", "peak_aligning_moment", "peak_side_force", "side_force"]
+__all__ = ["aligning_moment", "peak_aligning_moment", "peak_side_force", "side_force", "straight_tangent_stiffnesses"]
 
 
 def side_force(tyre: Any, deflection: Any, load: Any) -> Any:
@@ -30,7 +30,7 @@ def side_force(tyre: Any, deflection: Any, load: Any) -> Any:
         F_y [N]; thesis (2-10) for the nonlinear law, (2-4) for the straight tangent.
     """
     if tyre.law == "straight_tangent":
-        return tyre.cornering_stiffness * deflection / tyre.relaxation_length
+        return straight_tangent_stiffnesses(tyre)[0] * deflection / tyre.relaxation_length
     slip = ca.atan(deflection / tyre.relaxation_length)
     if tyre.law == "linear":
         return tyre.cornering_slope * slip * load
@@ -55,13 +55,26 @@ def aligning_moment(tyre: Any, deflection: Any, load: Any) -> Any:
         M_z [N m], positive against positive yaw; thesis (4-8), zero beyond the slip limit.
     """
     if tyre.law == "straight_tangent":
-        return tyre.aligning_stiffness * deflection / tyre.relaxation_length
+        return straight_tangent_stiffnesses(tyre)[1] * deflection / tyre.relaxation_length
     slip = ca.atan(deflection / tyre.relaxation_length)
     if tyre.law == "linear":
         return tyre.aligning_coefficient * slip * load
     limit = tyre.aligning_slip_limit
     within = tyre.aligning_coefficient * limit / math.pi * ca.sin(math.pi * slip / limit) * load
     return ca.if_else(ca.fabs(slip) <= limit, within, 0)
+
+
+def straight_tangent_stiffnesses(tyre: Any) -> tuple[Any, Any]:
+    """Cornering stiffness [N/rad] and aligning stiffness [N m/rad] of a straight-tangent tyre.
+
+    From string data: 2 c_c (sigma + a)^2 and 2 c_c a (sigma (sigma + a) + a^2/3), where c_c is the lateral carcass stiffness
+    per length, a the half contact length and sigma = sqrt(S/c_c) the relaxation length under string tension S.
+    Source: Pacejka, Tyre and Vehicle Dynamics, ch. 5.
+    """
+    c_c, sigma, a = tyre.carcass_stiffness, tyre.relaxation_length, tyre.half_contact_length
+    if c_c is None:
+        return tyre.cornering_stiffness, tyre.aligning_stiffness
+    return 2 * c_c * (sigma + a) ** 2, 2 * c_c * a * (sigma * (sigma + a) + a**2 / 3)
 
 
 # X cos(0.95 X) is largest where 0.95 X tan(0.95 X) = 1, at 0.95 X = 0.860333589...

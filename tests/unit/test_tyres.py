@@ -6,10 +6,17 @@ import pytest
 from basic_twin import aligning_moment as twin_moment
 from basic_twin import parameters
 from basic_twin import side_force as twin_force
+from scipy.integrate import trapezoid
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, GRID_SEARCH, ROUNDING
 
 from damperopt.specs import LinearTyre, StraightTangentTyre, StringTyre
-from damperopt.tyres import aligning_moment, peak_aligning_moment, peak_side_force, side_force
+from damperopt.tyres import (
+    aligning_moment,
+    peak_aligning_moment,
+    peak_side_force,
+    side_force,
+    straight_tangent_stiffnesses,
+)
 
 LOAD = 150e3
 CONTACT = {"half_contact_length": 0.1, "relaxation_length": 0.3}
@@ -125,3 +132,24 @@ def test_nonlinear_law_starts_as_the_linear_one():
     small = np.array([1e-5, -1e-5])
     for law in (side_force, aligning_moment):
         np.testing.assert_allclose(values(law, STRING, small), values(law, same, small), rtol=1e-6)
+
+
+def test_straight_tangent_stiffnesses_from_the_carcass():
+    """Sums of the carcass forces c_c v over the string, for unit slip: deflection sigma at the leading point, growing to the
+    rear along the contact line, decaying over sigma before and behind it. Forces behind the centre turn the wheel back."""
+    a, sigma, c_c = 0.1, 0.3, 2e5
+    inside, outside = np.linspace(-a, a, 20001), np.linspace(0, 40 * sigma, 400001)  # x forward from the centre
+    line = sigma + a - inside
+    ahead, behind = line[-1] * np.exp(-outside / sigma), line[0] * np.exp(-outside / sigma)
+    places = (inside, a + outside, -a - outside)
+    parts = list(zip((line, ahead, behind), places, (inside, outside, outside), strict=True))
+    force = c_c * sum(trapezoid(v, along) for v, _, along in parts)
+    moment = -c_c * sum(trapezoid(v * x, along) for v, x, along in parts)
+    tyre = StraightTangentTyre(law="straight_tangent", carcass_stiffness=c_c, **CONTACT)
+    assert straight_tangent_stiffnesses(tyre) == pytest.approx((force, moment), rel=1e-6)
+
+
+@pytest.mark.parametrize("given", [{}, {"cornering_stiffness": 1e5}, {"aligning_stiffness": 1e4, "carcass_stiffness": 1e5}])
+def test_half_or_double_stiffness_of_the_straight_tangent_is_refused(given):
+    with pytest.raises(ValueError, match="incomplete or double stiffness"):
+        StraightTangentTyre(law="straight_tangent", **CONTACT, **given)

@@ -7,13 +7,13 @@
 'solved'
 """
 
-from .certify import Certificate, certify
+from .certify import certify
 from .config import json_schema, load, loads
 from .design import combinations, optimise, optimise_each, rank
 from .errors import CertificateError, ConfigError, DamperoptError, OutputError
 from .modes import ModeTable, track_modes
 from .problem import DesignProblem
-from .results import DesignResult, load_result
+from .results import Certificate, DesignResult, load_result
 from .specs import Study
 from .stability import LinearGear, critical_speeds, linear_gear, spectral_abscissa, worst_points
 from .verify import GridCheck, check_grid

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, lcm
 from typing import Any, TypeAlias
@@ -25,48 +24,15 @@ import numpy as np
 
 from .errors import CertificateError
 from .exact import evaluate, rational
+from .results import Certificate
 from .specs import Study
 from .stability import LinearModel
 from .symbols import data_values
 
-__all__ = ["Certificate", "certify"]
+__all__ = ["certify"]
 
 Q: TypeAlias = flint.fmpq
 MAX_BOXES = 20_000
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """Outcome of `certify`.
-
-    Attributes
-    ----------
-    proved : bool
-        True: every speed and load of the envelope has a spectral abscissa below -margin.
-    margin : float
-        The margin that was tested [1/s].
-    speed : tuple of float
-        Speed range [m/s].
-    loads : tuple of float
-        The loads, or the ends of the range [N].
-    method : str
-        ``sturm`` or ``bernstein``.
-    counterexample : tuple of float or None
-        (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved.
-    reason : str
-        One sentence.
-    boxes : int
-        Rectangles examined (``bernstein``).
-    """
-
-    proved: bool
-    margin: float
-    speed: tuple[float, float]
-    loads: tuple[float, ...]
-    method: str
-    counterexample: tuple[float, float] | None
-    reason: str
-    boxes: int = 0
 
 
 def certify(study: Study, design: Mapping[str, float], margin: float | None = None) -> Certificate:

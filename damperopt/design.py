@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -20,13 +19,12 @@ from .problem import ROD, DesignProblem
 from .provenance import provenance_of
 from .results import (
     UNITS,
-    CertificateResult,
+    Certificate,
     ConstraintResult,
     DesignResult,
     LocalOptimum,
     MassResult,
     Relaxation,
-    StabilityResult,
     StartResult,
     Verification,
 )
@@ -44,6 +42,9 @@ SAME_MASS = 1e-4
 
 KKT_TOLERANCE = 1e-5
 """Largest KKT residual that counts as optimal (kg per unit of a scaled variable, and scaled rows)."""
+
+REFINEMENTS = 5
+"""Times that a counterexample of the certificate is handed back to the solver (over a load range)."""
 
 Progress = Callable[[int, int], None]
 
@@ -203,8 +204,23 @@ def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> De
             )
             return base.model_copy(update={"message": message, "design": diagnosis.feasible_design})
         solved = [rescued]
-    best = min(solved, key=lambda found: found.solution.objective)
-    return _checked(problem, best, solved, base)
+    best, certificate = _proved(solver, min(solved, key=lambda found: found.solution.objective))
+    return _checked(problem, best, certificate, solved, base)
+
+
+def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
+    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it."""
+    study = solver.problem.study
+    certificate = certify(study, best.solution.design)
+    for _ in range(REFINEMENTS):
+        if certificate.counterexample is None:
+            break
+        points = [*best.solution.points, certificate.counterexample]
+        again = best_local(solver, best.solution.design, points)
+        if not again.solved:
+            break
+        best, certificate = again, certify(study, again.solution.design)
+    return best, certificate
 
 
 def _points_for(problem: DesignProblem, design: Mapping[str, float]) -> list[tuple[float, float]]:
@@ -212,11 +228,14 @@ def _points_for(problem: DesignProblem, design: Mapping[str, float]) -> list[tup
 
 
 def _checked(
-    problem: DesignProblem, best: EnvelopeSolution, solved: list[EnvelopeSolution], base: DesignResult
+    problem: DesignProblem,
+    best: EnvelopeSolution,
+    certificate: Certificate,
+    solved: list[EnvelopeSolution],
+    base: DesignResult,
 ) -> DesignResult:
     """Result of the best local optimum, with proof and verification."""
     study, solution, worst = problem.study, best.solution, best.worst[0]
-    certificate = certify(study, solution.design)
     grid = check_grid(study, solution.design)
     agreeing = sum(s.solution.objective <= solution.objective * (1 + SAME_MASS) for s in solved)
     passed = grid.passed and certificate.proved and solution.kkt_residual <= KKT_TOLERANCE
@@ -225,7 +244,7 @@ def _checked(
         grid_passed=grid.passed,
         grid_speeds=grid.speeds,
         grid_loads=grid.loads,
-        worst=StabilityResult(**asdict(grid.worst)),
+        worst=grid.worst,
         kkt_residual=solution.kkt_residual,
         agreeing_starts=agreeing,
     )
@@ -248,10 +267,10 @@ def _checked(
             "design": solution.design,
             "derived": {**problem.yaw_numbers(solution.design), ROD: problem.rod_diameter(solution.design)},
             "mass": MassResult(total=mass, parts=problem.parts(solution.design)),
-            "stability": StabilityResult(**asdict(worst)),
+            "stability": worst,
             "constraints": _constraints(problem, best),
             "not_checked": _not_checked(study),
-            "certificate": CertificateResult(**asdict(certificate)),
+            "certificate": certificate,
             "verification": verification,
             "sensitivities": sensitivities(problem, solution),
         }

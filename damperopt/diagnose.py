@@ -9,10 +9,10 @@ import numpy as np
 
 from .exchange import first_points
 from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program
-from .results import Infeasibility, Relaxation
+from .results import Infeasibility, OperatingPoint, Relaxation
 from .scan import steady_designs
 from .solve import NlpSolver
-from .stability import OperatingPoint, worst_points
+from .stability import worst_points
 
 __all__ = ["Diagnosis", "diagnose"]
 

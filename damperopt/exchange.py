@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from .program import FactorProgram, HurwitzProgram, Program
+from .results import OperatingPoint
 from .solve import LocalSolution, NlpSolver
-from .stability import OperatingPoint, worst_points
+from .stability import worst_points
 
 __all__ = ["EnvelopeSolution", "best_local", "first_points", "solve_envelope"]
 

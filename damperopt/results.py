@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,16 +14,16 @@ from .errors import ConfigError
 __all__ = [
     "SCHEMA_VERSION",
     "UNITS",
-    "CertificateResult",
+    "Certificate",
     "ConstraintResult",
     "DesignResult",
     "Infeasibility",
     "LocalOptimum",
     "MassResult",
+    "OperatingPoint",
     "Provenance",
     "Relaxation",
     "Sensitivity",
-    "StabilityResult",
     "StartResult",
     "Verification",
     "load_result",
@@ -43,6 +44,49 @@ UNITS = {
     "limit_torque": "N m",
 }
 """SI unit of each number of `DesignResult.design` and `DesignResult.derived`."""
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """A speed [m/s] and a vertical load [N], with the spectral abscissa there [1/s]."""
+
+    speed: float
+    load: float
+    abscissa: float
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Outcome of `certify`.
+
+    Attributes
+    ----------
+    proved : bool
+        True: every speed and load of the envelope has a spectral abscissa below -margin.
+    margin : float
+        The margin that was tested [1/s].
+    speed : tuple of float
+        Speed range [m/s].
+    loads : tuple of float
+        The loads, or the ends of the range [N].
+    method : str
+        ``sturm`` or ``bernstein``.
+    counterexample : tuple of float or None
+        (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved.
+    reason : str
+        One sentence.
+    boxes : int
+        Rectangles examined (``bernstein``).
+    """
+
+    proved: bool
+    margin: float
+    speed: tuple[float, float]
+    loads: tuple[float, ...]
+    method: str
+    counterexample: tuple[float, float] | None
+    reason: str
+    boxes: int = 0
 
 
 class _Record(BaseModel):
@@ -73,27 +117,6 @@ class ConstraintResult(_Record):
     relaxed_by: tuple[str, ...] = ()
 
 
-class StabilityResult(_Record):
-    """Worst point of the envelope: speed [m/s], load [N] and spectral abscissa [1/s] there."""
-
-    speed: float
-    load: float
-    abscissa: float
-
-
-class CertificateResult(_Record):
-    """Outcome of the exact proof; see `damperopt.certify`."""
-
-    proved: bool
-    margin: float
-    speed: tuple[float, float]
-    loads: tuple[float, ...]
-    method: str
-    counterexample: tuple[float, float] | None
-    reason: str
-    boxes: int = 0
-
-
 class Verification(_Record):
     """Checks that do not share the optimiser's code.
 
@@ -105,7 +128,7 @@ class Verification(_Record):
     grid_passed: bool
     grid_speeds: int
     grid_loads: int
-    worst: StabilityResult
+    worst: OperatingPoint
     kkt_residual: float
     agreeing_starts: int
 
@@ -191,10 +214,10 @@ class DesignResult(_Record):
     design: dict[str, float] = {}
     derived: dict[str, float] = {}
     mass: MassResult | None = None
-    stability: StabilityResult | None = None
+    stability: OperatingPoint | None = None
     constraints: tuple[ConstraintResult, ...] = ()
     not_checked: tuple[str, ...] = ()
-    certificate: CertificateResult | None = None
+    certificate: Certificate | None = None
     verification: Verification | None = None
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()

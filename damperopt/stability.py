@@ -15,6 +15,7 @@ from scipy.optimize import brentq, minimize, minimize_scalar
 from .dae import DAE
 from .dynamics import build
 from .hurwitz import characteristic_polynomial, hurwitz_determinants, shifted
+from .results import OperatingPoint
 from .specs import Envelope, Study
 from .symbols import data_values, symbolic
 
@@ -22,7 +23,6 @@ __all__ = [
     "CriticalSpeed",
     "LinearGear",
     "LinearModel",
-    "OperatingPoint",
     "critical_speeds",
     "linear_gear",
     "linearise",
@@ -56,15 +56,6 @@ def linearise(dae: DAE) -> ca.Function:
         A -= ca.jacobian(dae.ode, dae.z) @ ca.solve(ca.jacobian(dae.alg, dae.z), ca.jacobian(dae.alg, dae.x))
     A = ca.densify(ca.substitute(A, dae.x, ca.SX.zeros(dae.x.shape)))
     return ca.Function("state_matrix", [dae.design, dae.speed, dae.load, dae.data], [A])
-
-
-@dataclass(frozen=True)
-class OperatingPoint:
-    """A speed [m/s] and a vertical load [N], with the spectral abscissa there [1/s]."""
-
-    speed: float
-    load: float
-    abscissa: float
 
 
 @dataclass(frozen=True)

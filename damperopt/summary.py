@@ -9,10 +9,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from .certify import Certificate
-from .results import UNITS, DesignResult
+from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
-from .stability import CriticalSpeed, OperatingPoint
+from .stability import CriticalSpeed
 
 __all__ = ["show_analysis", "show_design", "show_ranking"]
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .results import OperatingPoint
 from .specs import Study
-from .stability import OperatingPoint, linear_gear
+from .stability import linear_gear
 
 __all__ = ["GridCheck", "check_grid"]
 

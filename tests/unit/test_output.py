@@ -111,3 +111,10 @@ def test_region_is_stable_where_eigenvalues_say_so(solved):
         for j, x in enumerate(region.x):
             design = result.design | {region.x_name: x, region.y_name: y}
             assert (region.stability[i, j] > 0) == (model.at(design).abscissa(speeds, 150e3).max() < -0.1)
+
+
+def test_records_of_certificate_and_point_come_back_as_they_were(solved):
+    again = damperopt.DesignResult.model_validate_json(solved[1].to_json())
+    assert again.certificate == solved[1].certificate
+    assert again.stability == solved[1].stability
+    assert isinstance(again.certificate, damperopt.Certificate)

@@ -11,7 +11,7 @@ SAME_EQUATIONS = 1e-13
 """Relative to the largest rate; package against twin, the same sums in another order (measured: below 1e-14)."""
 
 CHARACTERISTIC_POLYNOMIAL = 1e-10
-"""Relative; Faddeev and LeVerrier against rational numbers (measured: 1e-14, and 1e-12 after interpolation in speed)."""
+"""Relative; floating point against rational numbers (measured: 1e-14, and 1e-12 after interpolation in speed)."""
 
 CENTRAL_DIFFERENCE_STEP = 1e-5
 CENTRAL_DIFFERENCE = 1e-7

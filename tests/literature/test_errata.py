@@ -29,37 +29,7 @@ OF_DAMPER = ("c_lambda", "k_lambda", "E", "I_arm", "L", "sin_gamma", "sin_alpha"
 def p(request):
     """Random positive rational values of every symbol, no two alike, so that no term vanishes or cancels by chance."""
     random = np.random.default_rng(2015 + request.param)
-    primes = [
-        2,
-        3,
-        5,
-        7,
-        11,
-        13,
-        17,
-        19,
-        23,
-        29,
-        31,
-        37,
-        41,
-        43,
-        47,
-        53,
-        59,
-        61,
-        67,
-        71,
-        73,
-        79,
-        83,
-        89,
-        97,
-        101,
-        103,
-        107,
-        109,
-    ]
+    primes = [n for n in range(2, 110) if all(n % d for d in range(2, n))]
     above, below = random.permutation(primes).tolist(), random.permutation(primes).tolist()
     values = [Fraction(x, y) for x, y in zip(above, below, strict=True) if x != y]
     return SimpleNamespace(**dict(zip((*OF_GEAR, *OF_DAMPER), values, strict=False)))

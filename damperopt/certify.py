@@ -62,8 +62,8 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
     family = _Family(study, design, margin)
     method = "bernstein" if envelope.load_is_range else "sturm"
 
-    def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0) -> Certificate:
-        return Certificate(point is None, margin, speeds, loads, method, point, reason, boxes)
+    def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
+        return Certificate(point is None if proved is None else proved, margin, speeds, loads, method, point, reason, boxes)
 
     # one stable point for each separate proof
     for load in loads[:1] if envelope.load_is_range else loads:
@@ -76,8 +76,10 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
         for condition in family.conditions():
             point, examined = _zero_in_rectangle(condition, speeds, loads)
             boxes += examined
+            if point is not None and family.stable_at(rational(point[0]), rational(point[1])):
+                return outcome(None, f"undecided near {_place(point)}, where the margin is kept", boxes, proved=False)
             if point is not None:
-                return outcome(point, f"missed or touched at or near {_place(point)}", boxes)
+                return outcome(point, f"missed or touched at {_place(point)}", boxes)
         return outcome(None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and loads", boxes)
 
     for load in loads:
@@ -203,9 +205,13 @@ def _zeros_in_range(condition: Any, speeds: tuple[float, float]) -> list[float]:
 
 
 def _sturm_chain(polynomial: flint.fmpq_poly) -> list[flint.fmpz_poly]:
-    """Sturm's chain; a member may be scaled by a positive number, so each is kept primitive with integer coefficients."""
-    first = polynomial.numer()
-    chain = [_primitive(first), _primitive(first.derivative())]
+    """Sturm's chain; a member may be scaled by a positive number, so each is kept primitive with integer coefficients.
+
+    Of the square-free part: at a multiple zero all members of the polynomial's own chain vanish, and nothing is counted.
+    """
+    whole = polynomial.numer()
+    first = _primitive(whole // whole.gcd(whole.derivative())) if whole.degree() > 0 else whole
+    chain = [first, _primitive(first.derivative())]
     while chain[-1].degree() > 0:
         above, below = chain[-2:]
         scale = abs(below.leading_coefficient()) ** (above.degree() - below.degree() + 1)
@@ -250,10 +256,11 @@ def _zero_in_rectangle(
     whole = _bernstein(condition, speeds, loads)
     if whole[0, 0] < 0:
         whole = -whole
-    stack = [(whole, (Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)), 0)]
+    unit = Fraction(0), Fraction(1)
+    stack = [(whole, unit, unit)]
     examined = 0
     while stack:
-        box, v, f, axis = stack.pop()
+        box, v, f = stack.pop()
         examined += 1
         if (box > 0).all():
             continue
@@ -262,11 +269,16 @@ def _zero_in_rectangle(
                 return (_inside(speeds, v[i]), _inside(loads, f[j])), examined
         if examined > MAX_BOXES:
             return (_inside(speeds, (v[0] + v[1]) / 2), _inside(loads, (f[0] + f[1]) / 2)), examined
-        if box.shape[axis] == 1:
-            axis = 1 - axis
-        for half, (a, b) in zip(_halves(box, axis), _split(v if axis == 0 else f), strict=True):
-            stack.append((half, (a, b), f, 1) if axis == 0 else (half, v, (a, b), 0))
+        # halve where the polynomial varies more: a ridge along one axis needs no cuts across it
+        along_v = _variation(box, 0) >= _variation(box, 1)
+        for half, interval in zip(_halves(box, 0 if along_v else 1), _split(v if along_v else f), strict=True):
+            stack.append((half, interval, f) if along_v else (half, v, interval))
     return None, examined
+
+
+def _variation(box: np.ndarray, axis: int) -> int:
+    """Largest difference of neighbouring coefficients along an axis; 0 where there is one coefficient only."""
+    return max(map(abs, np.diff(box, axis=axis).ravel().tolist()), default=0)
 
 
 def _inside(ends: tuple[float, ...], fraction: Fraction) -> float:

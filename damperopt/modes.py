@@ -12,6 +12,10 @@ from .stability import LinearGear
 __all__ = ["ModeTable", "track_modes"]
 
 FINE = 400
+"""Speeds between the ends along which modes are followed, beside those asked for."""
+
+LONGEST_REACH = 3.0
+"""Longest extrapolation, in steps of the last one: beyond, rounding errors would steer it."""
 
 
 @dataclass(frozen=True)
@@ -81,29 +85,62 @@ def track_modes(gear: LinearGear, speeds: np.ndarray, load: float) -> ModeTable:
     between = np.geomspace(speeds[0], speeds[-1], FINE) if len(speeds) > 1 else speeds
     fine = np.unique(np.concatenate([speeds, np.clip(between, speeds[0], speeds[-1])]))
     values, right = np.linalg.eig(gear.matrices(fine, load))
-    participation = np.abs(np.linalg.inv(right).transpose(0, 2, 1) * right)
-    participation /= participation.sum(axis=1, keepdims=True)
+    # pinv, since a defective matrix (coincident roots) has no inverse of its eigenvectors
+    participation = np.abs(np.linalg.pinv(right).transpose(0, 2, 1) * right)
+    participation /= np.maximum(participation.sum(axis=1, keepdims=True), 1e-300)
 
     order = [np.argsort(values[0].imag + 1e-6 * values[0].real)]
     followed = [values[0][order[0]]]
     for k in range(1, len(fine)):
         guess = followed[-1]
-        if k > 1:
-            guess = guess + (followed[-1] - followed[-2]) * (fine[k] - fine[k - 1]) / (fine[k - 1] - fine[k - 2])
+        ratio = (fine[k] - fine[k - 1]) / (fine[k - 1] - fine[k - 2]) if k > 1 else np.inf
+        if ratio < LONGEST_REACH:
+            guess = guess + (followed[-1] - followed[-2]) * ratio
         _, match = linear_sum_assignment(np.abs(guess[:, None] - values[k][None, :]))
         order.append(match)
         followed.append(values[k][match])
     shares = np.mean([participation[k][:, order[k]] for k in range(len(fine))], axis=0)
     rows = np.searchsorted(fine, speeds)
-    return ModeTable(speeds, load, _names(gear.state_names, shares), np.array(followed)[rows])
+    return ModeTable(speeds, load, _names(gear.state_names, shares, np.array(followed)), np.array(followed)[rows])
 
 
-def _names(state_names: tuple[str, ...], shares: np.ndarray) -> tuple[str, ...]:
-    """Name of each mode: the degree of freedom that takes part most, each as often as it has states."""
+def _names(state_names: tuple[str, ...], shares: np.ndarray, followed: np.ndarray) -> tuple[str, ...]:
+    """Name of each mode: the degree of freedom that takes part most, each as often as it has states.
+
+    Conjugate pairs choose first, among the degrees of freedom with two states, so that both roots have one name; the real
+    roots share what is left.
+    """
     freedom = {"yaw": "torsional", "bending": "lateral", "string": "string"}
     of_state = [freedom[name.split("_")[0]] for name in state_names]
     freedoms = list(dict.fromkeys(of_state))
     together = np.array([sum(shares[i] for i, f in enumerate(of_state) if f == name) for name in freedoms])
-    rows = [freedoms.index(name) for name in of_state]
-    _, chosen = linear_sum_assignment(-together[rows].T)
-    return tuple(of_state[i] for i in chosen)
+
+    names: dict[int, str] = {}
+    pairs = _conjugate_pairs(followed)
+    double = [i for i, name in enumerate(freedoms) if of_state.count(name) == 2]
+    worth = np.array([[together[i, j] + together[i, k] for i in double] for j, k in pairs]).reshape(len(pairs), len(double))
+    for row, column in zip(*linear_sum_assignment(-worth), strict=True):
+        names |= dict.fromkeys(pairs[row], freedoms[double[column]])
+    left = list(of_state)
+    for name in names.values():
+        left.remove(name)
+    single = [j for j in range(len(of_state)) if j not in names]
+    worth = np.array([[together[freedoms.index(name), j] for name in left] for j in single]).reshape(len(single), len(left))
+    for row, column in zip(*linear_sum_assignment(-worth), strict=True):
+        names[single[row]] = left[column]
+    return tuple(names[j] for j in range(len(of_state)))
+
+
+def _conjugate_pairs(followed: np.ndarray) -> list[tuple[int, int]]:
+    """Pairs of columns that are conjugate, and not real, at most speeds."""
+    n = followed.shape[1]
+    size = 1e-9 * (1 + np.abs(followed))
+    pairs: list[tuple[int, int]] = []
+    for j in range(n):
+        for k in range(j + 1, n):
+            conjugate = (np.abs(followed[:, j] - followed[:, k].conj()) < size[:, j]) & (
+                np.abs(followed[:, j].imag) > size[:, j]
+            )
+            if conjugate.mean() > 0.5:
+                pairs.append((j, k))
+    return pairs

@@ -72,7 +72,8 @@ class Certificate:
     method : str
         ``sturm`` or ``bernstein``.
     counterexample : tuple of float or None
-        (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved.
+        (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
+        could not be decided.
     reason : str
         One sentence.
     boxes : int

@@ -31,12 +31,15 @@ __all__ = [
     "worst_points",
 ]
 
-SPEED_DEGREE = 2
-"""V times any coefficient of the characteristic polynomial is a polynomial of this degree in V (V enters the state
-matrix as V in the string row and as 1/V in the yaw row only)."""
+DEGREE = 2
+"""V times any coefficient of the characteristic polynomial is a polynomial of this degree in V, and a coefficient one of this
+degree in F_z: V enters the state matrix as V in the string row and as 1/V in the yaw row only, F_z in two rows."""
 
 LOADS = 9
-"""Loads of the first look at a load range."""
+"""Loads of the first look at a load range, spaced evenly, and as many spaced geometrically."""
+
+LINES = 7
+"""Lines of constant speed along which a load range is searched exactly."""
 
 
 def linearise(dae: DAE) -> ca.Function:
@@ -188,16 +191,36 @@ def speed_polynomials(gear: LinearGear, load: float, top_speed: float) -> list[P
     list of Polynomial
         v a_0, ..., v a_n as polynomials in v = V/top_speed (a common factor v > 0 moves no root).
     """
-    v = 0.5 + 0.5 * np.cos(np.pi * (np.arange(SPEED_DEGREE + 1) + 0.5) / (SPEED_DEGREE + 1))
-    A = gear.matrices(v * top_speed, load)
-    a = characteristic_polynomial(A)
-    samples = [a_i * v for a_i in a]
-    to_coefficients = np.linalg.inv(np.vander(v, increasing=True))
-    return [Polynomial(to_coefficients @ values) for values in samples]
+    v = _chebyshev_points()
+    a = characteristic_polynomial(gear.matrices(v * top_speed, load))
+    return _interpolated([a_i * v for a_i in a])
+
+
+def _chebyshev_points() -> np.ndarray:
+    return 0.5 + 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+
+
+def _interpolated(samples: list[np.ndarray]) -> list[Polynomial]:
+    """Polynomials of degree `DEGREE` through samples at the Chebyshev points."""
+    points = _chebyshev_points()
+    to_coefficients = np.linalg.inv(np.vander(points, increasing=True))
+    return [Polynomial(to_coefficients @ np.broadcast_to(values, points.shape)) for values in samples]
 
 
 def crossing_speeds(polynomials: list[Polynomial], top_speed: float, level: float, low: float, high: float) -> np.ndarray:
     """Speeds in [low, high] at which some root has the real part `level` [1/s], ascending [m/s]."""
+    return _crossings(polynomials, level, low / top_speed, high / top_speed) * top_speed
+
+
+def crossing_loads(gear: LinearGear, speed: float, level: float, low: float, high: float) -> np.ndarray:
+    """Loads in [low, high] at which some root has the real part `level` [1/s] at one speed, ascending [N]."""
+    f = _chebyshev_points()
+    a = characteristic_polynomial(gear.matrices(speed, f * high))
+    return _crossings(_interpolated(a), level, low / high, 1.0) * high
+
+
+def _crossings(polynomials: list[Polynomial], level: float, low: float, high: float) -> np.ndarray:
+    """Arguments in [low, high] at which a polynomial in s with these coefficients has a root of real part `level`."""
     moved = shifted(polynomials, -level)
     candidates = []
     for condition in (moved[-1], hurwitz_determinants(moved)[-2]):
@@ -205,8 +228,8 @@ def crossing_speeds(polynomials: list[Polynomial], top_speed: float, level: floa
         roots = condition.trim(largest * 1e-15).roots() if largest > 0 else np.array([])
         # a pair of equal roots comes out as a complex pair of tiny imaginary part: keep it, callers look for themselves
         candidates.append(roots.real[np.abs(roots.imag) < 1e-6 * (np.abs(roots.real) + 1e-9)])
-    speeds = np.concatenate(candidates) * top_speed
-    return np.unique(speeds[(speeds >= low) & (speeds <= high)])
+    found = np.concatenate(candidates)
+    return np.unique(found[(found >= low) & (found <= high)])
 
 
 def critical_speeds(gear: LinearGear, load: float, low: float, high: float, margin: float = 0.0) -> list[CriticalSpeed]:
@@ -232,14 +255,14 @@ def critical_speeds(gear: LinearGear, load: float, low: float, high: float, marg
     for rough in crossing_speeds(polynomials, high, -margin, low, high):
         eigenvalues = np.linalg.eigvals(gear.matrices(rough, load)[0]) + margin
         crossing = eigenvalues[np.abs(eigenvalues.real).argmin()]
-        if abs(crossing.real) > 1e-3 * (1 + abs(crossing)):
-            continue  # a symmetric real pair +-r, which H_(n-1) = 0 also flags: nothing crosses
 
         def real_part(V: float, near: complex = crossing) -> float:
             values = np.linalg.eigvals(gear.matrices(V, load)[0]) + margin
             return float(values[np.abs(values - near).argmin()].real)
 
         speed = _polish(real_part, float(rough))
+        if abs(real_part(speed)) > 1e-6 * (1 + abs(crossing)):
+            continue  # H_(n-1) = 0 also where two real roots are +-r: nothing crosses
         step = 1e-5 * speed
         before, after = gear.abscissa([speed - step, speed + step], load) + margin
         pair = abs(crossing.imag) > 1e-6 * (1 + abs(crossing))
@@ -295,32 +318,53 @@ def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, s
 
 
 def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> list[OperatingPoint]:
-    """Peaks of the abscissa over the rectangle of speeds and loads, from a grid."""
-    speeds = np.linspace(np.log(envelope.speed.min), np.log(envelope.speed.max), samples)
-    loads = np.linspace(envelope.loads[0], envelope.loads[-1], LOADS)
+    """Peaks of the abscissa over the rectangle of speeds and loads.
+
+    Refined peaks of a grid first; then lines of constant speed, along which the abscissa's crossings of the level found are
+    again zeros of polynomials, now in the load: a ridge that lies between the loads of the grid is found where it cuts one.
+    """
+    (low, high), (light, heavy) = (envelope.speed.min, envelope.speed.max), envelope.loads[:2]
+    speeds = np.unique(np.geomspace(low, high, samples))
+    loads = np.union1d(np.linspace(light, heavy, LOADS), np.geomspace(light, heavy, LOADS))
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
-    height = gear.abscissa(np.exp(V), F_z).reshape(LOADS, samples)
-    corners = np.array([speeds[0], loads[0]]), np.array([speeds[-1], loads[-1]])
-    step = np.array([speeds[1] - speeds[0] if samples > 1 else 0.0, loads[1] - loads[0]])
-
-    def point(place: np.ndarray) -> OperatingPoint:
-        speed = float(np.clip(np.exp(place[0]), envelope.speed.min, envelope.speed.max))
-        return OperatingPoint(speed, float(place[1]), float(gear.abscissa(speed, place[1])[0]))
-
+    height = gear.abscissa(V, F_z).reshape(len(loads), len(speeds))
     found = []
     for i, j in np.argwhere(height >= maximum_filter(height, 3, mode="nearest")):
-        start = np.array([speeds[j], loads[i]])
-        low, high = np.maximum(start - step, corners[0]), np.minimum(start + step, corners[1])
-        width = np.where(high > low, high - low, 1.0)
-        best = minimize(
-            lambda u, low=low, width=width: -point(low + u * width).abscissa,
-            (start - low) / width,
-            method="Nelder-Mead",
-            bounds=list(zip([0.0, 0.0], (high - low) / width, strict=True)),
-            options={"xatol": 1e-6, "fatol": 1e-10, "maxfev": 300},
-        )
-        found += [point(start), point(low + best.x * width)]
+        box = [
+            (speeds[max(j - 1, 0)], speeds[min(j + 1, len(speeds) - 1)]),
+            (loads[max(i - 1, 0)], loads[min(i + 1, len(loads) - 1)]),
+        ]
+        found.append(_refined_in_box(gear, (speeds[j], loads[i]), box))
+
+    for speed in (max(found, key=lambda p: p.abscissa).speed, *np.unique(np.geomspace(low, high, LINES))):
+        level = max(p.abscissa for p in found)
+        ends = np.concatenate([[light], crossing_loads(gear, speed, level + 1e-9 * (1 + abs(level)), light, heavy), [heavy]])
+        middles = (ends[1:] + ends[:-1]) / 2
+        for i in np.flatnonzero(gear.abscissa(speed, middles) > level + 1e-9 * (1 + abs(level))):
+            box = [(low, high), (ends[i], ends[i + 1])]
+            found.append(_refined_in_box(gear, (speed, middles[i]), box))
+            found += _worst_at_load(gear, envelope, found[-1].load, samples)
     return found
+
+
+def _refined_in_box(gear: LinearGear, start: tuple[float, float], box: list[tuple[float, float]]) -> OperatingPoint:
+    """Local maximum of the abscissa from a start within a box of speed and load."""
+    low = np.array([edge[0] for edge in box])
+    width = np.array([edge[1] - edge[0] for edge in box])
+
+    def point(u: np.ndarray) -> OperatingPoint:
+        speed, load = np.clip(low + u * width, [e[0] for e in box], [e[1] for e in box])
+        return OperatingPoint(float(speed), float(load), float(gear.abscissa(speed, load)[0]))
+
+    first = np.where(width > 0, (np.array(start) - low) / np.where(width > 0, width, 1), 0.0)
+    best = minimize(
+        lambda u: -point(u).abscissa,
+        first,
+        method="Nelder-Mead",
+        bounds=[(0.0, float(w > 0)) for w in width],
+        options={"xatol": 1e-7, "fatol": 1e-11, "maxfev": 400},
+    )
+    return max(point(first), point(best.x), key=lambda p: p.abscissa)
 
 
 def _peaks(height: np.ndarray) -> list[int]:

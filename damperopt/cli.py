@@ -20,6 +20,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from . import config, summary
 from .certify import certify
+from .critical import critical_speeds
 from .design import combinations, optimise_each, rank
 from .errors import ConfigError, DamperoptError, Interrupted, OutputError
 from .materials import MATERIALS
@@ -27,8 +28,9 @@ from .modes import ModeTable, track_modes
 from .output import run_folder, write_modes, write_ranking, write_run
 from .results import DesignResult, load_result
 from .specs import Study
-from .stability import critical_speeds, linear_gear, worst_points
+from .stability import linear_gear
 from .variables import DESIGN_VARIABLES, TOPOLOGIES
+from .worst import worst_points
 
 __all__ = ["app", "main"]
 

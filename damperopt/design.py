@@ -31,9 +31,9 @@ from .results import (
 from .sensitivity import sensitivities
 from .solve import NlpSolver
 from .specs import Study
-from .stability import worst_points
 from .variables import TOPOLOGIES
 from .verify import check_grid
+from .worst import worst_points
 
 __all__ = ["combinations", "optimise", "optimise_each", "rank"]
 

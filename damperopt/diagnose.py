@@ -12,7 +12,7 @@ from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program
 from .results import Infeasibility, OperatingPoint, Relaxation
 from .scan import steady_designs
 from .solve import NlpSolver
-from .stability import worst_points
+from .worst import worst_points
 
 __all__ = ["Diagnosis", "diagnose"]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from .program import FactorProgram, HurwitzProgram, Program
 from .results import OperatingPoint
 from .solve import LocalSolution, NlpSolver
-from .stability import worst_points
+from .worst import worst_points
 
 __all__ = ["EnvelopeSolution", "best_local", "first_points", "solve_envelope"]
 

@@ -9,9 +9,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from .critical import CriticalSpeed
 from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
-from .stability import CriticalSpeed
 
 __all__ = ["show_analysis", "show_design", "show_ranking"]
 

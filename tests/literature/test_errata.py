@@ -17,9 +17,10 @@ from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 from tolerances import CHARACTERISTIC_POLYNOMIAL, QUADRATURE, ROUNDING
 
+from damperopt.critical import speed_polynomials
 from damperopt.hurwitz import characteristic_polynomial, hurwitz_determinants
 from damperopt.specs import Damper
-from damperopt.stability import LinearModel, speed_polynomials
+from damperopt.stability import LinearModel
 
 OF_GEAR = ("I_x", "I_z", "V", "sigma", "kappa", "C_F", "C_M", "F_z", "l_g", "e", "a", "k_y", "c_y", "sin_phi", "sin_psi")
 OF_DAMPER = ("c_lambda", "k_lambda", "E", "I_arm", "L", "sin_gamma", "sin_alpha", "R", "b")

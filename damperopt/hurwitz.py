@@ -116,4 +116,4 @@ def lienard_chipart(a: Sequence[Any]) -> dict[str, Any]:
     n = len(a) - 1
     H = hurwitz_determinants(a[: n + 1])
     conditions = {f"a{i}": a[i] for i in range(n, 0, -2)}
-    return conditions | {f"H{m}": H[m - 1] for m in range(n - 1, 1, -2)}
+    return conditions | {f"H{m}": H[m - 1] for m in range(n - 1, 0, -2)}

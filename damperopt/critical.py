@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
-from .hurwitz import characteristic_polynomial, hurwitz_determinants, shifted
+from .hurwitz import characteristic_polynomial, hurwitz_determinant, shifted
 from .stability import LinearGear
 
 __all__ = ["CriticalSpeed", "critical_speeds", "crossing_loads", "crossing_speeds", "speed_polynomials"]
@@ -93,7 +93,7 @@ def _crossings(polynomials: list[Polynomial], level: float, low: float, high: fl
     """Arguments in [low, high] at which a polynomial in s with these coefficients has a root of real part `level`."""
     moved = shifted(polynomials, -level)
     candidates = []
-    for condition in (moved[-1], hurwitz_determinants(moved)[-2]):
+    for condition in (moved[-1], hurwitz_determinant(moved, len(moved) - 2)):
         largest = np.abs(condition.coef).max()
         roots = condition.trim(largest * 1e-15).roots() if largest > 0 else np.array([])
         # a pair of equal roots comes out as a complex pair of tiny imaginary part: keep it, callers look for themselves

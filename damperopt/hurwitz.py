@@ -13,7 +13,14 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["characteristic_polynomial", "determinant", "hurwitz_determinants", "lienard_chipart", "shifted"]
+__all__ = [
+    "characteristic_polynomial",
+    "determinant",
+    "hurwitz_determinant",
+    "hurwitz_determinants",
+    "lienard_chipart",
+    "shifted",
+]
 
 
 def characteristic_polynomial(A: Any) -> list[Any]:
@@ -81,6 +88,19 @@ def determinant(rows: Sequence[Sequence[Any]]) -> Any:
     return total
 
 
+def hurwitz_determinant(a: Sequence[Any], order: int) -> Any:
+    """Leading principal minor H_order of the Hurwitz matrix.
+
+    Examples
+    --------
+    >>> hurwitz_determinant([1, 2, 3, 4], 2)  # a_1 a_2 - a_0 a_3
+    2
+    """
+    n = len(a) - 1
+    rows = [[a[2 * j - i + 1] if 0 <= 2 * j - i + 1 <= n else 0 for j in range(order)] for i in range(order)]
+    return determinant(rows)
+
+
 def hurwitz_determinants(a: Sequence[Any]) -> list[Any]:
     """Leading principal minors [H_1, ..., H_n] of the Hurwitz matrix; all > 0 with a_0 > 0 iff p is stable.
 
@@ -89,9 +109,7 @@ def hurwitz_determinants(a: Sequence[Any]) -> list[Any]:
     >>> hurwitz_determinants([1, 2, 3, 4])  # a_1, a_1 a_2 - a_0 a_3, a_3 H_2
     [2, 2, 8]
     """
-    n = len(a) - 1
-    matrix = [[a[2 * j - i + 1] if 0 <= 2 * j - i + 1 <= n else 0 for j in range(n)] for i in range(n)]
-    return [determinant([row[:m] for row in matrix[:m]]) for m in range(1, n + 1)]
+    return [hurwitz_determinant(a, order) for order in range(1, len(a))]
 
 
 def lienard_chipart(a: Sequence[Any]) -> dict[str, Any]:
@@ -114,6 +132,5 @@ def lienard_chipart(a: Sequence[Any]) -> dict[str, Any]:
     {'a3': 4, 'a1': 2, 'H2': 2}
     """
     n = len(a) - 1
-    H = hurwitz_determinants(a[: n + 1])
     conditions = {f"a{i}": a[i] for i in range(n, 0, -2)}
-    return conditions | {f"H{m}": H[m - 1] for m in range(n - 1, 0, -2)}
+    return conditions | {f"H{m}": hurwitz_determinant(a, m) for m in range(n - 1, 0, -2)}

@@ -98,18 +98,18 @@ def evaluate(function: ca.Function, arguments: Sequence[Sequence[flint.fmpq]]) -
     for k in range(function.n_instructions()):
         operation = function.instruction_id(k)
         into, out_of = function.instruction_output(k), function.instruction_input(k)
-        if operation == ca.OP_CONST:
-            work[into[0]] = rational(function.instruction_constant(k))
-        elif operation == ca.OP_INPUT:
-            work[into[0]] = arguments[out_of[0]][out_of[1]]
-        elif operation == ca.OP_OUTPUT:
-            column, row = divmod(into[1], rows)
-            output[row][column] = work[out_of[0]]
-        elif operation in _OPERATIONS:
-            try:
+        try:
+            if operation == ca.OP_CONST:
+                work[into[0]] = rational(function.instruction_constant(k))
+            elif operation == ca.OP_INPUT:
+                work[into[0]] = arguments[out_of[0]][out_of[1]]
+            elif operation == ca.OP_OUTPUT:
+                column, row = divmod(into[1], rows)
+                output[row][column] = work[out_of[0]]
+            elif operation in _OPERATIONS:
                 work[into[0]] = _OPERATIONS[operation](*(work[i] for i in out_of))
-            except ZeroDivisionError as error:
-                raise CertificateError("the state matrix divides by zero at this data") from error
-        else:
-            raise CertificateError(f"operation {operation} of the state matrix has no exact form")
+            else:
+                raise CertificateError(f"operation {operation} of the state matrix has no exact form")
+        except (ArithmeticError, ValueError) as error:  # division by zero, root of a negative number, infinity, NaN
+            raise CertificateError(f"the state matrix has no real value at these data: {error}") from error
     return output

@@ -110,6 +110,8 @@ def evaluate(function: ca.Function, arguments: Sequence[Sequence[flint.fmpq]]) -
                 work[into[0]] = _OPERATIONS[operation](*(work[i] for i in out_of))
             else:
                 raise CertificateError(f"operation {operation} of the state matrix has no exact form")
-        except (ArithmeticError, ValueError) as error:  # division by zero, root of a negative number, infinity, NaN
+        except ZeroDivisionError as error:
+            raise CertificateError("the state matrix divides by zero at these data") from error
+        except (ArithmeticError, ValueError) as error:  # root of a negative number, infinity, NaN
             raise CertificateError(f"the state matrix has no real value at these data: {error}") from error
     return output

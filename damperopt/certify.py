@@ -86,9 +86,8 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
         zeros = [V for condition in family.conditions(rational(load)) for V in _zeros_in_range(condition, speeds)]
         if zeros:
             worst = family.worst_between(sorted(zeros), speeds, load), load
-            return outcome(
-                worst, f"missed at {_place(worst)}; roots cross at {', '.join(f'{V:.6g}' for V in sorted(zeros))} m/s"
-            )
+            meeting = ", ".join(f"{V:.6g}" for V in sorted(zeros))
+            return outcome(worst, f"missed or touched at {_place(worst)}; roots meet the line at {meeting} m/s")
     return outcome(None, "one point is stable, and no root can cross at any speed")
 
 

@@ -300,7 +300,7 @@ def _workers(studies: Sequence[Study]) -> int:
 def _progress() -> Iterator:
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=err, transient=True) as bar:
-        task = bar.add_task("starts", total=None)
+        task = bar.add_task("starting", total=None)
 
         def report(done: int, total: int, study: Study) -> None:
             bar.update(task, completed=done, total=total, description=f"{study.damper.topology}, {study.material.name}")

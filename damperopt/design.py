@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -55,7 +55,6 @@ def optimise(
     workers: int = 1,
     progress: Progress | None = None,
     config_file: str | Path | None = None,
-    pool: Executor | None = None,
 ) -> DesignResult:
     """Lightest damper of a study, proved stable over its envelope.
 
@@ -68,8 +67,6 @@ def optimise(
         Called with (done, total) after each start.
     config_file : str, Path or None
         Source of the study, for the provenance.
-    pool : Executor or None
-        A pool to share between calls, instead of `workers`.
 
     Returns
     -------
@@ -83,10 +80,7 @@ def optimise(
     """
     combinations(study, [], [])  # refuses what cannot be optimised
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
-    if pool is None and workers > 1:
-        with executor(workers) as own:
-            outcomes = run_starts(study, own, progress)
-    else:
+    with executor(workers) as pool:
         outcomes = run_starts(study, pool, progress)
     solver = solver_for(study.model_dump_json())
     result = _answer(study, solver, outcomes)
@@ -138,15 +132,15 @@ def optimise_each(
     progress: Callable[[int, int, Study], None] | None = None,
     config_file: str | Path | None = None,
 ) -> Iterator[DesignResult]:
-    """Optimise several studies with one pool of processes; each result is yielded as soon as it is there.
+    """Optimise several studies, side by side if there are workers; each result is yielded as soon as its turn comes.
 
     Parameters
     ----------
     studies : sequence of Study
     workers : int
-        Processes.
+        Processes; each takes whole studies. A single study shares its starts among them instead.
     progress : callable or None
-        Called with (done, total, study) after each start.
+        Called with (done, total, study): starts of a single study or of studies in this process, else studies.
     config_file : str, Path or None
         Source, for the provenance.
 
@@ -155,16 +149,23 @@ def optimise_each(
     DesignResult
         In the order of the studies.
     """
-    total, before = sum(study.solver.starts for study in studies), 0
-    with executor(workers) as pool:
-        for study in studies:
-
-            def report(done: int, _: int, study: Study = study, before: int = before) -> None:
+    if len(studies) > 1 and workers > 1:
+        with executor(workers) as pool:
+            results = (pool.map if pool else map)(partial(optimise, config_file=config_file), studies)
+            for done, result in enumerate(results, 1):
                 if progress:
-                    progress(before + done, total, study)
+                    progress(done, len(studies), studies[done - 1])
+                yield result
+        return
+    total, before = sum(study.solver.starts for study in studies), 0
+    for study in studies:
 
-            yield optimise(study, progress=report, config_file=config_file, pool=pool)
-            before += study.solver.starts
+        def report(done: int, _: int, study: Study = study, before: int = before) -> None:
+            if progress:
+                progress(before + done, total, study)
+
+        yield optimise(study, workers=workers, progress=report, config_file=config_file)
+        before += study.solver.starts
 
 
 def rank(results: Iterable[DesignResult]) -> list[DesignResult]:

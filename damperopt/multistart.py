@@ -107,7 +107,7 @@ def executor(workers: int) -> Iterator[Executor | None]:
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods:
-        context.set_forkserver_preload([__name__])  # casadi is imported once, not once per worker
+        context.set_forkserver_preload(["damperopt.design"])  # casadi is imported once, not once per worker
     pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt)
     try:
         yield pool

@@ -77,14 +77,15 @@ def modes_over_speed(table: ModeTable, margin: float = 0.0, title: str = "", axe
 
 def _draw_modes(table: ModeTable, margin: float, title: str, axes: Any) -> None:
     upper, lower = axes
+    line: dict[str, Any] = {"lw": 1.8, "marker": "o" if len(table.speeds) == 1 else ""}
     for name in COLOURS:
         columns = [j for j, n in enumerate(table.names) if n == name]
         for j in columns:
             label = name if j == columns[0] else None
-            upper.plot(table.speeds, table.eigenvalues[:, j].real, color=COLOURS[name], label=label, lw=1.8)
+            upper.plot(table.speeds, table.eigenvalues[:, j].real, color=COLOURS[name], label=label, **line)
             if name != "string":
                 oscillating = np.abs(table.eigenvalues[:, j].imag) > 1e-6
-                lower.plot(table.speeds, np.where(oscillating, table.frequency[:, j], np.nan), color=COLOURS[name], lw=1.8)
+                lower.plot(table.speeds, np.where(oscillating, table.frequency[:, j], np.nan), color=COLOURS[name], **line)
     _shade(upper, table, margin)
     upper.axhline(0, color="black", lw=0.8)
     if margin > 0:

@@ -46,7 +46,7 @@ def least_conditions(
     for j in range(V.size):
         a = [base[i, j] + per_k[i, j] * k_psi / STIFFNESS + per_c[i, j] * c_psi / DAMPING for i in range(len(base))]
         for condition in lienard_chipart(shifted(a, margin)).values():
-            least = np.minimum(least, condition / np.median(np.abs(condition)))
+            least = np.minimum(least, condition / max(np.median(np.abs(condition)), 1e-300))
     return least
 
 

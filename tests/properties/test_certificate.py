@@ -23,7 +23,7 @@ from random_gears import (
 )
 from scipy.optimize import brentq
 
-from damperopt import certify, linear_gear
+from damperopt import certify, linear_gear, worst_points
 from damperopt.certify import (
     _bernstein,
     _bernstein_1d,
@@ -504,6 +504,27 @@ def test_an_island_of_any_size_is_found_and_a_near_miss_is_proved(main_gear, exc
     assert kept.proved
     assert not missed.proved
     assert fails_at_its_counterexample(study, missed)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 5])
+def test_the_largest_margin_that_is_proved_is_the_worst_abscissa(main_gear, seed):
+    """Bisection of the margin by proofs alone, over speed and load, against the search by eigenvalues."""
+    rng = np.random.default_rng(seed)
+    while True:
+        low = float(10 ** rng.uniform(3, 5))
+        study = random_gear(rng, main_gear, load=(low, low * float(10 ** rng.uniform(0.3, 2))))
+        if certify(study, {}, 0.0).proved:
+            break
+    kept, missed = 0.0, 1.0
+    while certify(study, {}, missed).proved:
+        kept, missed = missed, 2 * missed
+    while missed - kept > 1e-9 * missed:
+        middle = (kept + missed) / 2
+        certificate = certify(study, {}, middle)
+        kept, missed = (middle, missed) if certificate.proved else (kept, middle)
+        assert certificate.proved or fails_at_its_counterexample(study, certificate)
+    worst = worst_points(linear_gear(study, {}), study.envelope)[0]
+    assert worst.abscissa == pytest.approx(-kept, rel=1e-8, abs=1e-8)
 
 
 def test_a_list_of_loads_fails_if_and_only_if_one_of_them_does(main_gear):

@@ -607,6 +607,15 @@ def test_modes_do_not_depend_on_the_grid(main_gear, grid):
     assert compared >= 9
 
 
+@pytest.mark.parametrize("order", [3, 5])
+def test_names_do_not_depend_on_how_many_speeds_are_asked_for(main_gear, order):
+    """Three real roots at every speed from 20 to 100 m/s: which one is the string's must not hang on the sampling."""
+    gear = linear_gear(rotational(main_gear, order=order, damping=22500.0, speed=(20.0, 100.0)), {})
+    few, many = (track_modes(gear, np.linspace(20.0, 100.0, count), 1.5e5) for count in (2, 3000))
+    assert np.abs(few.eigenvalues[-1] - many.eigenvalues[-1]).max() < 1e-6
+    assert few.names == many.names
+
+
 def test_modes_move_continuously(main_gear):
     """A followed eigenvalue moves by no more than a few times what the fine grid makes it move, however few are asked."""
     for order in (3, 5):

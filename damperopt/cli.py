@@ -125,11 +125,11 @@ def optimise(
             own.mkdir()
             _write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
 
+    write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:
         summary.show_design(out, ordered[0])
     else:
         summary.show_ranking(out, ordered)
-    write_run(folder, write)
     out.print(f"\nResults in {folder}", soft_wrap=True)
     if interrupted:
         err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
@@ -152,6 +152,12 @@ def analyse(
     values = None
     if design is not None:
         study, values = _with_design(study, load_result(design), file, design)
+        out.print(
+            f"Layout ({study.damper.topology}, {study.damper.geometry}) and material ({study.material.name}) are those of "
+            f"{design}; all else is that of {file}.",
+            soft_wrap=True,
+            markup=False,
+        )
     grid = _speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import reprlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -166,7 +167,7 @@ def _what(problem: Any, path: tuple) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     if kind in ("quantity", "study"):
         return problem["msg"]
-    found = problem.get("input")
+    found = _Shortened(problem.get("input"))
     if kind == "missing":
         return f"missing key; allowed: {_allowed_at(path)}"
     if kind == "extra_forbidden":
@@ -182,6 +183,18 @@ def _what(problem: Any, path: tuple) -> str:
     if kind.startswith("model_") or kind in ("dict_type", "model_type"):
         return f"found {found!r} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path))}"
     return f"found {found!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path)}"
+
+
+class _Shortened:
+    """Value whose repr fits into a message."""
+
+    def __init__(self, value: Any):
+        self.value = value
+
+    def __repr__(self) -> str:
+        return reprlib.repr(self.value)
+
+    __str__ = __repr__
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:

@@ -113,13 +113,20 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, event: Lim
     required, model = study.requirements, study.mass
     height = design["L"] * ca.cos(design["gamma"])
     lugs, reach, keys = 2 * height, linkage.reach, ("requirements.lug_distance", "requirements.reach")
-    over_tyre = study.gear.wheel_radius + required.tyre_clearance - model.lower_lug_height
+    clearance = height + model.lower_lug_height - study.gear.wheel_radius
     blocks = [
         Constraint("lug_distance_min", lugs, required.lug_distance.min, True, "m", (f"{keys[0]}.min",)),
         Constraint("lug_distance_max", lugs, required.lug_distance.max, False, "m", (f"{keys[0]}.max",)),
         Constraint("reach_min", reach, required.reach.min, True, "m", (f"{keys[1]}.min",)),
         Constraint("reach_max", reach, required.reach.max, False, "m", (f"{keys[1]}.max",)),
-        Constraint("tyre_clearance", height, over_tyre, True, "m", ("requirements.tyre_clearance", "mass.lower_lug_height")),
+        Constraint(
+            "tyre_clearance",
+            clearance,
+            required.tyre_clearance,
+            True,
+            "m",
+            ("requirements.tyre_clearance", "mass.lower_lug_height"),
+        ),
     ]
     if linkage.damper_length is not None:
         needed = rod_length(study, event) + event.stroke + bore(study, event, rod_diameter)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
+from .errors import ConfigError
 from .hurwitz import characteristic_polynomial, hurwitz_determinant, shifted
 from .stability import LinearGear
 
@@ -119,7 +120,14 @@ def critical_speeds(gear: LinearGear, load: float, low: float, high: float, marg
     -------
     list of CriticalSpeed
         Ascending in speed.
+
+    Raises
+    ------
+    ConfigError
+        If speeds or load are not positive, or the range is inverted.
     """
+    if not (0 < low <= high < np.inf and 0 < load < np.inf):
+        raise ConfigError(f"found speeds {low:g} to {high:g} m/s, load {load:g} N; allowed: 0 < low <= high, load > 0")
     polynomials = speed_polynomials(gear, load, high)
     found = []
     for rough in crossing_speeds(polynomials, high, -margin, low, high):

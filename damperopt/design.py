@@ -306,7 +306,7 @@ def _constraints(problem: DesignProblem, best: EnvelopeSolution) -> tuple[Constr
                 limit=limit,
                 sense=">=" if constraint.at_least else "<=",
                 unit=constraint.unit,
-                active=abs(rows[constraint.name]) < 1e-6,
+                active=abs(rows[constraint.name]) < 1e-6 or multiplier > 1e-6 * solution.objective,
                 multiplier=float(multiplier),
                 shadow_price=float(per_limit if constraint.at_least else -per_limit),
                 relaxed_by=constraint.relaxed_by,

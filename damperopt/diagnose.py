@@ -69,7 +69,7 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
         return Diagnosis(None, None)
     if max(least.slacks.values()) < ENOUGH:
         return Diagnosis(least.design, None)
-    found = {name: _least(solver, [least.design, *starts[: STEADY + 1]], (name,)) for name in everything}
+    found = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything}
     alone = {name: elastic for name, elastic in found.items() if elastic is not None}
     # the elastic program has local optima: one relaxation alone may turn out cheaper than what it found for all
     least = min([least, *alone.values()], key=lambda elastic: elastic.price)

@@ -16,6 +16,9 @@ from .scan import promising_designs, sobol_designs
 from .solve import NlpSolver
 from .specs import Study
 
+HOPELESS = 3
+"""Sobol starts that are still tried where the scan finds no design."""
+
 __all__ = ["StartOutcome", "executor", "run_starts", "solver_for", "starting_designs"]
 
 
@@ -44,6 +47,8 @@ def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
     if not others or all(v.lower == v.upper for v in problem.variables[:-1]):
         return [study.start]
     promising = promising_designs(problem, (others + 1) // 2)
+    if not promising:  # nothing meets the requirements at any stiffness: most likely nothing does at all
+        others = min(others, HOPELESS)
     sobol = sobol_designs(problem, others - len(promising)).tolist()
     return [study.start, *promising, *(dict(zip(problem.design_names, row, strict=True)) for row in sobol)]
 

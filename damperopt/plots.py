@@ -11,6 +11,7 @@ matplotlib.use("Agg", force=False)
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullLocator
 
 from .modes import ModeTable
 from .region import FeasibleRegion
@@ -71,6 +72,7 @@ def modes_over_speed(table: ModeTable, margin: float = 0.0, title: str = "", axe
         if axes is None:
             _, axes = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=[3, 2])
         _draw_modes(table, margin, title, axes)
+        _limits(axes, [table], margin)
         _legend(axes[0].figure, axes[:1])
         return axes[0].figure
 
@@ -90,14 +92,24 @@ def _draw_modes(table: ModeTable, margin: float, title: str, axes: Any) -> None:
     upper.axhline(0, color="black", lw=0.8)
     if margin > 0:
         upper.axhline(-margin, color="#a11d33", lw=1.2, ls="--", label=f"margin {margin:g} 1/s")
-    upper.set_yscale("asinh", linear_width=max(margin, 0.1))
-    upper.margins(y=0.12)
+    linear = max(margin, 0.1)
+    upper.set_yscale("asinh", linear_width=linear)
+    decades = 10.0 ** np.arange(np.ceil(np.log10(linear)), 7)  # the scale's own ticks crowd its linear part
+    upper.set_yticks([*-decades[::-1], 0, *decades], [f"{tick:g}" for tick in (*-decades[::-1], 0, *decades)])
+    upper.yaxis.set_minor_locator(NullLocator())
     upper.set_ylabel("Real part of the eigenvalues [1/s]")
     upper.set_title(title, fontsize=10)
     lower.set_ylabel("Frequency [Hz]")
-    lower.margins(y=0.2)
-    lower.set_ylim(bottom=0)
     lower.set_xlabel("Speed [m/s]")
+
+
+def _limits(axes: Any, tables: list[ModeTable], margin: float) -> None:
+    """Limits that hold every table: panels side by side share them."""
+    real = np.concatenate([table.eigenvalues.real.ravel() for table in tables])
+    linear = max(margin, 0.1)
+    axes[0].set_ylim(1.5 * min(real.min(), 0) - linear, 1.5 * max(real.max(), 0) + 2 * linear)
+    oscillating = [table.frequency[:, [name != "string" for name in table.names]].max() for table in tables]
+    axes[1].set_ylim(0, 1.15 * max(*oscillating, 0.1))
 
 
 def _legend(figure: Any, axes: Any) -> None:
@@ -136,6 +148,7 @@ def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> An
         figure, axes = plt.subplots(2, 2, sharex=True, sharey="row", figsize=(10, 6), height_ratios=[3, 2])
         _draw_modes(before, margin, "Before: start of the study", axes[:, 0])
         _draw_modes(after, margin, "After: optimum", axes[:, 1])
+        _limits(axes[:, 0], [before, after], margin)
         _legend(figure, axes[0])
         for axis in axes[:, 1]:
             axis.set_ylabel("")
@@ -169,8 +182,11 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         # the scale first: labels of the mass lines are placed on it
         axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
         axis.contourf(X, Y, record.feasible.astype(float), levels=[0.5, 1.5], colors=["#cfe8d5"])
-        handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color="#cfe8d5")]
-        labels = ["feasible"]
+        handles: list[Any] = []
+        labels: list[str] = []
+        if record.feasible.any():
+            handles.append(plt.Rectangle((0, 0), 1, 1, color="#cfe8d5"))
+            labels.append("feasible")
         limits: dict[str, Any] = {"stability margin": (-record.stability, "#a11d33", "-")}
         for name, (words, colour, style) in LIMITS.items():
             if name in record.violated:

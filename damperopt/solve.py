@@ -16,6 +16,7 @@ __all__ = ["LocalSolution", "NlpSolver"]
 
 _OPTIONS: dict[str, Any] = {
     "print_time": False,
+    "show_eval_warnings": False,  # a trial step that overflows is shortened by IPOPT; its status tells if none helps
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
     "ipopt.max_iter": 300,

@@ -216,7 +216,7 @@ class Study(Record):
             )
         if topology in TOPOLOGIES:
             if self.requirements is None:
-                raise refuse("requirements", "missing key", f"topology '{topology}' needs the block requirements")
+                raise refuse("requirements", "missing key", f"the block requirements, which topology '{topology}' needs")
             tyre = self.tyre
             peakless = tyre.law != "nonlinear" or tyre.aligning_coefficient == tyre.cornering_coefficient == 0
             if self.requirements.limit_torque is None and peakless:

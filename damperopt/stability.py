@@ -11,6 +11,7 @@ import numpy as np
 
 from .dae import DAE
 from .dynamics import build
+from .errors import ConfigError
 from .specs import Study
 from .symbols import data_values, symbolic
 
@@ -72,8 +73,14 @@ class LinearModel:
         self._data = ca.DM(data_values(study))
 
     def at(self, design: Mapping[str, float]) -> LinearGear:
-        """The gear with `design` (design variables by name, SI)."""
+        """The gear with `design` (design variables by name, SI); `ConfigError` if one is missing or not positive."""
         n = len(self.state_names)
+        wrong = [name for name in self.design_names if not 0 < design.get(name, np.nan) < np.inf]
+        if wrong:
+            raise ConfigError(
+                f"design.{wrong[0]}: found {design.get(wrong[0], 'nothing')}; "
+                f"allowed: positive finite {', '.join(self.design_names)}"
+            )
         values = ca.DM([design[name] for name in self.design_names])
 
         def matrices(speeds: Any, loads: Any) -> np.ndarray:

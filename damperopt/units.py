@@ -15,6 +15,9 @@ __all__ = ["Quantity"]
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
+SMALLEST, LARGEST = 1e-15, 1e15
+"""Numbers beyond are typing errors, and overflow in the middle of a solution."""
+
 _DECIMALS = Context(prec=40, traps=[])
 
 
@@ -108,8 +111,11 @@ class Quantity:
             and (self.below is None or value < self.below)
             and (self.at_most is None or value <= self.at_most)
         )
+        if value and not SMALLEST < abs(value) < LARGEST:
+            self._refuse(f"{found} is beyond any landing gear ({SMALLEST:g} to {LARGEST:g} in SI)")
         if not inside:
-            given = f" (= {value:g} {self.unit})" if isinstance(found, str) else ""
+            converted = isinstance(found, str) and not found.endswith(" " + self.unit)
+            given = f" (= {value:g} {self.unit})" if converted else ""
             self._refuse(f"{found}{given} is out of range")
         return value
 

@@ -55,9 +55,10 @@ def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> 
 
     Refined peaks of a grid first; then lines of constant speed, along which the abscissa's crossings of the level found are
     again zeros of polynomials, now in the load: a ridge that lies between the loads of the grid is found where it cuts one.
+    Last, the load of the best point is refined with the exact maximum over speed.
     """
     (low, high), (light, heavy) = (envelope.speed.min, envelope.speed.max), envelope.loads[:2]
-    speeds = np.unique(np.geomspace(low, high, samples))
+    speeds = np.unique(np.clip(np.geomspace(low, high, samples), low, high))
     loads = np.union1d(np.linspace(light, heavy, LOADS), np.geomspace(light, heavy, LOADS))
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
     height = gear.abscissa(V, F_z).reshape(len(loads), len(speeds))
@@ -69,7 +70,7 @@ def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> 
         ]
         found.append(_refined_in_box(gear, (speeds[j], loads[i]), box))
 
-    for speed in (max(found, key=lambda p: p.abscissa).speed, *np.unique(np.geomspace(low, high, LINES))):
+    for speed in (max(found, key=lambda p: p.abscissa).speed, *np.unique(np.clip(np.geomspace(low, high, LINES), low, high))):
         level = max(p.abscissa for p in found)
         ends = np.concatenate([[light], crossing_loads(gear, speed, level + 1e-9 * (1 + abs(level)), light, heavy), [heavy]])
         middles = (ends[1:] + ends[:-1]) / 2
@@ -77,7 +78,17 @@ def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> 
             box = [(low, high), (ends[i], ends[i + 1])]
             found.append(_refined_in_box(gear, (speed, middles[i]), box))
             found += _worst_at_load(gear, envelope, found[-1].load, samples)
-    return found
+    # along an oblique ridge: the maximum over speed, exact at each load, as a function of the load
+    top = max(found, key=lambda p: p.abscissa).load
+    left, right = int(np.searchsorted(loads, top)), int(np.searchsorted(loads, top, "right"))
+    bracket = loads[max(left - 1, 0)], loads[min(right, len(loads) - 1)]
+    ridge = minimize_scalar(
+        lambda load: -_worst_at_load(gear, envelope, load, samples)[0].abscissa,
+        bounds=bracket,
+        method="bounded",
+        options={"xatol": 1e-8 * heavy, "maxiter": 60},
+    )
+    return found + _worst_at_load(gear, envelope, float(ridge.x), samples)
 
 
 def _refined_in_box(gear: LinearGear, start: tuple[float, float], box: list[tuple[float, float]]) -> OperatingPoint:

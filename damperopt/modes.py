@@ -82,8 +82,8 @@ def track_modes(gear: LinearGear, speeds: np.ndarray, load: float) -> ModeTable:
     eigenvector), summed over the speeds, so a mode keeps its name where two modes exchange their shapes.
     """
     speeds = np.asarray(speeds, float)
-    between = np.geomspace(speeds[0], speeds[-1], FINE) if len(speeds) > 1 else speeds
-    fine = np.unique(np.concatenate([speeds, np.clip(between, speeds[0], speeds[-1])]))
+    between = np.clip(np.geomspace(speeds[0], speeds[-1], FINE), speeds[0], speeds[-1]) if len(speeds) > 1 else speeds
+    fine = np.unique(np.concatenate([speeds, between]))
     values, right = np.linalg.eig(gear.matrices(fine, load))
     # pinv, since a defective matrix (coincident roots) has no inverse of its eigenvectors
     participation = np.abs(np.linalg.pinv(right).transpose(0, 2, 1) * right)
@@ -99,9 +99,12 @@ def track_modes(gear: LinearGear, speeds: np.ndarray, load: float) -> ModeTable:
         _, match = linear_sum_assignment(np.abs(guess[:, None] - values[k][None, :]))
         order.append(match)
         followed.append(values[k][match])
-    shares = np.mean([participation[k][:, order[k]] for k in range(len(fine))], axis=0)
-    rows = np.searchsorted(fine, speeds)
-    return ModeTable(speeds, load, _names(gear.state_names, shares, np.array(followed)), np.array(followed)[rows])
+    # named over the speeds between alone, so that the speeds asked for do not tip the balance
+    own = np.searchsorted(fine, between)
+    shares = np.mean([participation[k][:, order[k]] for k in own], axis=0)
+    eigenvalues = np.array(followed)
+    names = _names(gear.state_names, shares, eigenvalues[own])
+    return ModeTable(speeds, load, names, eigenvalues[np.searchsorted(fine, speeds)])
 
 
 def _names(state_names: tuple[str, ...], shares: np.ndarray, followed: np.ndarray) -> tuple[str, ...]:

@@ -18,6 +18,8 @@ from damperopt.sizing import MassModel, Requirements
 from damperopt.specs import Gear
 from damperopt.variables import Solver
 
+pytestmark = pytest.mark.slow
+
 FILES = {
     "config.yaml",
     "mass.png",

@@ -88,6 +88,7 @@ def test_numbers_of_readme_and_changelog_are_those_of_the_frozen_optima():
     assert f"{design['L']:.4f}  m" in readme
 
 
+@pytest.mark.slow
 def test_python_of_the_readme_runs():
     code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL).group(1)
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)

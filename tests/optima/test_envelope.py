@@ -5,6 +5,8 @@ import pytest
 
 import damperopt
 
+pytestmark = pytest.mark.slow
+
 FEW = {"solver__starts": 4}
 
 

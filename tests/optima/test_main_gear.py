@@ -4,6 +4,8 @@ import pytest
 
 import damperopt
 
+pytestmark = pytest.mark.slow
+
 # mass [kg], design, constraints active at the optimum; margin 0.1 1/s, 5-100 m/s, 150 kN, AISI 4340
 FROZEN = {
     "boeing": (

@@ -44,6 +44,7 @@ def test_scan_points_meet_strength_and_geometry(problem):
         assert problem.yaw_numbers(point.design)["torsional_stiffness"] == pytest.approx(point.k_psi, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_lightest_of_the_scan_is_near_the_optimum(problem):
     best = promising_designs(problem, 1)[0]
     optimum = damperopt.optimise(problem.study)

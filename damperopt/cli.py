@@ -266,8 +266,8 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
     }
     try:
         return study.replace(**changes), result.design
-    except ValueError as error:
-        raise ConfigError(f"{file}: does not go with {source}: {error}") from None
+    except ConfigError as error:
+        raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None
 
 
 def _speed_grid(text: str, study: Study) -> np.ndarray:

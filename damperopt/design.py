@@ -8,8 +8,6 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from .certify import certify
 from .diagnose import diagnose
 from .errors import ConfigError
@@ -117,10 +115,9 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
             changes = {"damper__topology": topology} | ({"material": material} if material else {})
             try:
                 variants.append(study.replace(**changes))
-            except ValidationError as error:
-                message = "; ".join(f"{problem.get('ctx', {}).get('key', '')}: {problem['msg']}" for problem in error.errors())
+            except ConfigError as error:
                 raise ConfigError(
-                    f"{study.name}: with topology {topology}, material {material or 'as given'}: {message}"
+                    f"{study.name}: with topology {topology}, material {material or 'as given'}: {'; '.join(error.problems)}"
                 ) from None
     return variants
 

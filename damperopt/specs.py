@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema, model_validator
+from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag, ValidationError, WithJsonSchema, model_validator
 
 from .errors import ConfigError
 from .materials import Material
@@ -259,7 +259,7 @@ class Study(Record):
 
         Raises
         ------
-        pydantic.ValidationError
+        ConfigError
             If a key does not exist or the new study is not valid.
         """
         data = self.model_dump()
@@ -271,7 +271,16 @@ class Study(Record):
                     block[key] = {}
                 block = block[key]
             block[leaf] = value.model_dump() if isinstance(value, BaseModel) else value
-        return Study.model_validate(data)
+        try:
+            return Study.model_validate(data)
+        except ValidationError as error:
+            raise ConfigError([_problem_in_words(problem) for problem in error.errors(include_url=False)]) from None
+
+
+def _problem_in_words(problem: Any) -> str:
+    path = [*problem["loc"], *filter(None, [problem.get("ctx", {}).get("key")])]
+    what = "unknown key" if problem["type"] == "extra_forbidden" else problem["msg"]
+    return f"{'.'.join(map(str, path))}: {what}"
 
 
 def unit_of(study: Study, path: str) -> str:

@@ -16,6 +16,7 @@ from scipy.stats import qmc
 
 from .problem import DesignProblem
 from .screening import least_conditions, worst_abscissae
+from .solve import raise_if_interrupted
 
 __all__ = ["ScanPoint", "promising_designs", "sobol_designs", "steady_designs", "stiffness_scan"]
 
@@ -154,6 +155,7 @@ class _Layouts:
         p = np.concatenate([self._problem.data, [self._problem.load_limit, np.log(k_psi), np.log(c_psi)]])
         x0 = np.clip(self._x, lower, upper)
         result = self._solver(x0=x0, p=p, lbx=lower, ubx=upper, lbg=self._lbg, ubg=self._ubg)
+        raise_if_interrupted(self._solver.stats())
         if not self._solver.stats()["success"]:
             return None
         self._x = result["x"].full().ravel()

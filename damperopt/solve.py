@@ -12,7 +12,7 @@ import numpy as np
 from .problem import DesignProblem
 from .program import HurwitzProgram, Instance, Program
 
-__all__ = ["LocalSolution", "NlpSolver"]
+__all__ = ["LocalSolution", "NlpSolver", "raise_if_interrupted"]
 
 _OPTIONS: dict[str, Any] = {
     "print_time": False,
@@ -114,6 +114,7 @@ class NlpSolver:
         it = built.program.instance(design, points, **options)
         result = built.solver(x0=it.x0, p=it.p, lbx=it.lbx, ubx=it.ubx, lbg=it.lbg, ubg=it.ubg)
         stats = built.solver.stats()
+        raise_if_interrupted(stats)
         x, g, lam_g, lam_x = (result[key].full().ravel() for key in ("x", "g", "lam_g", "lam_x"))
         rows = len(self.problem.constraints)
         variables, data = len(self.problem.variables), len(self.problem.data)
@@ -153,6 +154,12 @@ class NlpSolver:
                 slots,
             )
         return self._built[form, slots]
+
+
+def raise_if_interrupted(stats: Mapping[str, Any]) -> None:
+    """Pass on a Ctrl-C that IPOPT has taken for a request to stop this one solution."""
+    if stats["return_status"] == "User_Requested_Stop":
+        raise KeyboardInterrupt
 
 
 @dataclass(frozen=True)

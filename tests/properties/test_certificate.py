@@ -541,6 +541,16 @@ def test_a_list_of_loads_fails_if_and_only_if_one_of_them_does(main_gear):
             assert fails_at_its_counterexample(several, certificate)
 
 
+def test_a_load_that_is_unstable_at_every_speed_shows_no_crossing_and_is_found_all_the_same(main_gear):
+    """k_psi + M F_z < 0 at 2 N: a real root on the right at every speed, and no root ever on the line."""
+    for loads, proved in (([0.5], True), ([2.0], False), ([0.5, 2.0], False), ([2.0, 0.5], False), ([0.5, 0.7], True)):
+        study = quadratic_gear(main_gear, -1.0, (0.5, 2.0), loads)
+        certificate = certify(study, {}, 0.0)
+        assert certificate.proved is proved
+        assert proved or fails_at_its_counterexample(study, certificate)
+        assert proved or certificate.counterexample[1] == 2.0
+
+
 def test_a_range_of_loads_of_one_rounding_unit_agrees_with_the_single_load(main_gear):
     for damping, proved in ((150.0, False), (400.0, True)):
         study = rotational(main_gear, damping=damping, load=(9.9e4, math.nextafter(9.9e4, math.inf)), **ISLAND)

@@ -160,7 +160,7 @@ def test_interrupt_leaves_nothing_half_written(configs, tmp_path):
     while not (tmp_path / "runs").exists():  # the run has begun
         assert process.poll() is None
         time.sleep(0.1)
-    time.sleep(3)
+    time.sleep(8)  # until the workers have started
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
     _, error = process.communicate(timeout=60)
     assert process.returncode == 130

@@ -5,7 +5,8 @@ and the length change s(psi) of the damper. With a spring of stiffness k_eps and
 
     torque = -k_eps eps(psi) eps'(psi) - c_lambda s'(psi)^2 psi'.
 
-Geometry `planar` is the linkage seen from the top (the apex moves purely sideways by ell sin(psi), ell = L sin(gamma)).
+Geometry `planar` is the linkage seen from the top: eps is that of an apex moving purely sideways by ell sin(psi), with
+ell = L sin(gamma), the damper length of UTAS that of an apex on the circle of radius ell; the two agree at psi = 0.
 Geometry `published` keeps those lengths for strokes and stresses, but takes stiffness and damping as printed in the
 thesis, (3-11), (3-12), (3-26), (3-30), (3-42), (3-45), known errors included; see the errata in the documentation.
 """

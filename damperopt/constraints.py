@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 
-from .dampers import Linkage
+from .linkage import Linkage
 from .objectives import LimitEvent, allowable_stress, arm_stress, bore, rod_diameters, rod_length
 
 __all__ = ["Constraint", "geometry", "strength"]

@@ -1,55 +1,28 @@
-"""Damper layouts: from the design variables to stiffness and damping about the yaw axis, by virtual work.
+"""Damper layouts: the lengths that a yaw angle changes, and the stiffness and damping that act along them.
 
 Every layout is a pair of lengths that depend on the yaw angle psi: the deflection eps(psi) of the spring or arm tip,
-and the length change s(psi) of the damper. With a spring of stiffness k_eps and a damper c_lambda, virtual work gives
+and the stroke s(psi) of the damper. With a spring of stiffness k_eps and a damper c_lambda, virtual work gives
 
     torque = -k_eps eps(psi) eps'(psi) - c_lambda s'(psi)^2 psi'.
 
 Geometry `planar` is the linkage seen from the top: eps is that of an apex moving purely sideways by ell sin(psi), with
 ell = L sin(gamma), the damper length of UTAS that of an apex on the circle of radius ell; the two agree at psi = 0.
-Geometry `published` keeps those lengths for strokes and stresses, but takes stiffness and damping as printed in the
-thesis, (3-11), (3-12), (3-26), (3-30), (3-42), (3-45), known errors included; see the errata in the documentation.
+Geometry `spatial` is the linkage itself, see `spatial`. Geometry `published` keeps the planar levers at rest for strokes
+and stresses, but takes stiffness and damping as printed in the thesis, (3-11), (3-12), (3-26), (3-30), (3-42), (3-45),
+known errors included; see the errata in the documentation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 
-__all__ = ["Linkage", "linkage"]
+from .linkage import Linkage, Position
+from .spatial import spatial
 
-
-@dataclass(frozen=True)
-class Linkage:
-    """A damper layout about its rest position; expressions in the design variables.
-
-    Attributes
-    ----------
-    torsional_stiffness, torsional_damping : SX
-        k_psi [N m/rad] and c_psi [N m s/rad] at psi = 0.
-    spring_lever, damper_lever : SX
-        d eps/d psi and ds/d psi at psi = 0 [m/rad].
-    torque : callable
-        (psi, psi') -> restoring torque of the linkage on the gear [N m].
-    reach : SX
-        Horizontal distance of the apex from the strut axis, L sin(gamma) [m].
-    arm_length : SX or None
-        Length of the bending arm that enters its bending, as seen from the top [m].
-    damper_length : SX or None
-        Pin-to-pin length of the damper [m]; None where the layout does not limit it.
-    """
-
-    torsional_stiffness: Any
-    torsional_damping: Any
-    spring_lever: Any
-    damper_lever: Any
-    torque: Any
-    reach: Any
-    arm_length: Any = None
-    damper_length: Any = None
+__all__ = ["linkage"]
 
 
 def linkage(damper: Any, design: Mapping[str, Any], youngs_modulus: Any) -> Linkage:
@@ -69,45 +42,37 @@ def linkage(damper: Any, design: Mapping[str, Any], youngs_modulus: Any) -> Link
     Linkage
     """
     if damper.topology == "rotational":
-        k_psi, c_psi = damper.torsional_stiffness, damper.torsional_damping
-        return Linkage(k_psi, c_psi, 1, 1, lambda psi, rate: -k_psi * psi - c_psi * rate, 0)
+        return _straight(damper.torsional_stiffness, damper.torsional_damping, 1, 1, 0)
+    if damper.geometry == "spatial":
+        return spatial(damper.topology, design, youngs_modulus)
     layout = {"boeing": _boeing, "utas": _utas, "arreaza": _arreaza}[damper.topology]
-    planar, printed = layout(design, youngs_modulus)
+    planar, (k_psi, c_psi) = layout(design, youngs_modulus)
     if damper.geometry == "planar":
         return planar
-    k_psi, c_psi = printed
-    return Linkage(
-        k_psi,
-        c_psi,
-        planar.spring_lever,
-        planar.damper_lever,
-        lambda psi, rate: -k_psi * psi - c_psi * rate,
-        planar.reach,
-        planar.arm_length,
-        planar.damper_length,
-    )
+    spring, lever = planar.spring_lever, planar.damper_lever
+    lengths = planar.reach, planar.arm_length, planar.damper_length
+    return _straight(k_psi / spring**2, c_psi / lever**2, spring, lever, *lengths)
 
 
-def _by_virtual_work(spring_stiffness, c_lambda, eps, s, reach, arm_length=None, damper_length=None) -> Linkage:
+def _straight(stiffness, damping, spring_lever, damper_lever, *lengths) -> Linkage:
+    """Constant levers."""
+
+    def at(psi: Any) -> Position:
+        return Position(spring_lever * psi, spring_lever, damper_lever * psi, damper_lever)
+
+    return Linkage(stiffness, damping, at, spring_lever, damper_lever, *lengths)
+
+
+def _from_lengths(stiffness, damping, eps, s, *lengths) -> Linkage:
+    """Levers as derivatives of the lengths eps(psi), s(psi)."""
     psi = ca.SX.sym("psi")
-    eps_psi, s_psi = ca.jacobian(eps(psi), psi), ca.jacobian(s(psi), psi)
+    expressions = [eps(psi), ca.jacobian(eps(psi), psi), s(psi) - s(0), ca.jacobian(s(psi), psi)]
 
-    def torque(angle: Any, rate: Any) -> Any:
-        stiff = ca.substitute(eps(psi) * eps_psi, psi, angle)
-        damped = ca.substitute(s_psi**2, psi, angle)
-        return -spring_stiffness * stiff - c_lambda * damped * rate
+    def at(angle: Any) -> Position:
+        return Position(*(ca.substitute(expression, psi, angle) for expression in expressions))
 
-    spring_lever, damper_lever = ca.substitute(eps_psi, psi, 0), ca.substitute(s_psi, psi, 0)
-    return Linkage(
-        spring_stiffness * spring_lever**2,
-        c_lambda * damper_lever**2,
-        spring_lever,
-        damper_lever,
-        torque,
-        reach,
-        arm_length,
-        damper_length,
-    )
+    rest = at(0)
+    return Linkage(stiffness, damping, at, rest.spring_lever, rest.damper_lever, *lengths)
 
 
 def _boeing(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any]]:
@@ -119,7 +84,7 @@ def _boeing(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any]
         return ell * ca.sin(psi)
 
     printed = k_lambda * ell**2, c_lambda * ell**2
-    return _by_virtual_work(k_lambda, c_lambda, gap, gap, ell), printed
+    return _from_lengths(k_lambda, c_lambda, gap, gap, ell), printed
 
 
 def _utas(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any]]:
@@ -136,7 +101,7 @@ def _utas(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any]]:
         return -ca.sqrt(ell**2 + b**2 - 2 * ell * b * ca.sin(psi))
 
     printed = 2 * E * I_arm * ell * sin_alpha / R**2, c_lambda * ell**2 * b / (10 * R)
-    return _by_virtual_work(3 * E * I_arm / R**3, c_lambda, arm_tip, damper, ell, R, R), printed
+    return _from_lengths(3 * E * I_arm / R**3, c_lambda, arm_tip, damper, ell, R, R), printed
 
 
 def _arreaza(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any]]:
@@ -148,4 +113,4 @@ def _arreaza(design: Mapping[str, Any], E: Any) -> tuple[Linkage, tuple[Any, Any
         return ell * ca.sin(psi)
 
     printed = 2 * E * I_arm / ell, c_lambda * ell**2
-    return _by_virtual_work(3 * E * I_arm / ell**3, c_lambda, apex, apex, ell, ell, b), printed
+    return _from_lengths(3 * E * I_arm / ell**3, c_lambda, apex, apex, ell, ell, b), printed

@@ -10,14 +10,18 @@ bending angle delta moves the wheel by l_g sin(delta). Source: Thota, Krauskopf 
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
 
 from .dae import DAE
+from .damper_torque import DamperTorque, damper_torque
 from .dampers import linkage
+from .elements import Elements, Linear
+from .sections import section_modulus
 from .symbols import SymbolicStudy
-from .tyres import aligning_moment, side_force
+from .tyres import aligning_moment, side_force, slip_angle
 from .variables import DESIGN_VARIABLES
 
 __all__ = ["build", "effective_caster"]
@@ -32,61 +36,99 @@ def effective_caster(gear: Any) -> Any:
     return e * ca.cos(phi) + (R_w + e * ca.sin(phi)) * ca.tan(phi)
 
 
-def build(symbols: SymbolicStudy) -> DAE:
+def build(symbols: SymbolicStudy, elements: Elements | None = None) -> DAE:
     """The equations of motion of a study.
 
     Parameters
     ----------
     symbols : SymbolicStudy
+    elements : Elements or None
+        Version of the nonlinear elements; None: `Linear`, joints in contact and no friction, as for stability.
 
     Returns
     -------
     DAE
         Order 3: states yaw_angle [rad], yaw_rate [rad/s], string_deflection [m]. Order 5: bending_angle [rad] and
-        bending_rate [rad/s] stand before string_deflection. No algebraic unknowns at these geometry levels.
+        bending_rate [rad/s] stand before string_deflection. Compliances add dashpot_stroke [m] or link_angle [rad] at the
+        end. Algebraic unknowns: those of the spatial linkage, and link_angle with both compliances.
     """
-    study = symbols.study
+    study, elements = symbols.study, elements or Linear()
     design_names = DESIGN_VARIABLES[study.damper.topology]
     design = {name: ca.SX.sym(name) for name in design_names}
-    speed, load = ca.SX.sym("speed"), ca.SX.sym("load")
-    damper_torque = linkage(study.damper, design, study.material.youngs_modulus).torque
+    speed, load, yaw_torque = ca.SX.sym("speed"), ca.SX.sym("load"), ca.SX.sym("yaw_torque")
 
     state_names = (*YAW_STATES, *(LATERAL_STATES if study.gear.order == 5 else ()), "string_deflection")
     x = {name: ca.SX.sym(name) for name in state_names}
-    ode = _equations(study.gear, study.tyre, damper_torque, x, speed, load)
+    link = linkage(study.damper, design, study.material.youngs_modulus)
+    damper = damper_torque(study.damper, link, elements, x["yaw_angle"], x["yaw_rate"])
+    motion = _equations(study.gear, study.tyre, elements, damper, x, speed, load, yaw_torque)
+    outputs = damper.outputs | motion.outputs
+    if "I_arm" in design:
+        moment = ca.fabs(outputs["spring_force"]) * link.arm_length
+        outputs["arm_stress"] = moment / section_modulus(study.mass.arm_section, design["I_arm"])
     return DAE(
-        x=ca.vertcat(*x.values()),
-        z=ca.SX(0, 1),
+        x=ca.vertcat(*x.values(), *damper.states.values()),
+        z=ca.vertcat(*damper.unknowns),
         design=ca.vertcat(ca.SX(0, 1), *design.values()),
         data=symbols.data,
         speed=speed,
         load=load,
-        ode=ode,
-        alg=ca.SX(0, 1),
-        state_names=state_names,
+        yaw_torque=yaw_torque,
+        ode=ca.vertcat(motion.ode, *damper.rates.values()),
+        alg=ca.vertcat(*damper.residuals),
+        rest=ca.vertcat(*damper.rest),
+        state_names=(*state_names, *damper.states),
         design_names=design_names,
         data_names=symbols.names,
+        outputs=outputs,
     )
 
 
-def _equations(gear: Any, tyre: Any, damper_torque: Any, x: dict[str, Any], V: Any, F_z: Any) -> Any:
+@dataclass(frozen=True)
+class _Motion:
+    ode: Any
+    outputs: dict[str, Any] = field(default_factory=dict)
+
+
+def _equations(
+    gear: Any,
+    tyre: Any,
+    elements: Elements,
+    damper: DamperTorque,
+    x: dict[str, Any],
+    V: Any,
+    F_z: Any,
+    yaw_torque: Any,
+) -> _Motion:
     # theory page, section 2: psi yaw, delta lateral bending, y string deflection, phi rake, e caster, a half contact
     # length, sigma relaxation length, kappa tread-width moment
     psi, psi_t, y = x["yaw_angle"], x["yaw_rate"], x["string_deflection"]
     phi, _e, a, sigma = gear.rake_angle, gear.caster_length, tyre.half_contact_length, tyre.relaxation_length
     e_eff = effective_caster(gear)
     theta = psi * ca.cos(phi)
-    F_y, M_z = side_force(tyre, y, F_z), aligning_moment(tyre, y, F_z)
+    F_y, M_z = side_force(tyre, y, F_z), aligning_moment(tyre, y, F_z, elements)
     M_kappa = tyre.tread_width_moment * ca.cos(phi) * psi_t / V
     M_load = F_z * ca.sin(phi) * e_eff * ca.sin(theta)
 
-    psi_tt = (damper_torque(psi, psi_t) - e_eff * F_y - M_z - M_kappa + M_load) / gear.yaw_inertia
+    torque = damper.torque - e_eff * F_y - M_z - M_kappa + M_load + yaw_torque
+    friction = 0 if gear.friction is None else elements.sign("friction", psi_t, gear.friction.smoothing)
+    psi_tt = torque / gear.yaw_inertia
+    if gear.friction is not None:
+        psi_tt -= gear.friction.torque * friction / gear.yaw_inertia
     y_t = V * ca.sin(theta) + (e_eff - a) * psi_t * ca.cos(theta) * ca.cos(phi) - V / sigma * y * ca.cos(theta)
+    outputs = {
+        "linkage_torque": damper.torque,
+        "torque_without_friction": torque,
+        "slip_angle": slip_angle(tyre, y),
+        "side_force": F_y,
+        "aligning_moment": M_z,
+    }
     if gear.order == 3:
-        return ca.vertcat(psi_t, psi_tt, y_t)
+        return _Motion(ca.vertcat(psi_t, psi_tt, y_t), outputs)
 
     strut, l_g = gear.lateral, gear.lateral.height
     delta, delta_t = x["bending_angle"], x["bending_rate"]
     bending = -strut.stiffness * delta - strut.damping * delta_t
     bending += -l_g * F_y * ca.cos(theta) * ca.cos(phi) * ca.cos(delta) + F_z * e_eff * ca.sin(theta)
-    return ca.vertcat(psi_t, psi_tt, delta_t, bending / strut.inertia, y_t + l_g * delta_t * ca.cos(delta))
+    ode = ca.vertcat(psi_t, psi_tt, delta_t, bending / strut.inertia, y_t + l_g * delta_t * ca.cos(delta))
+    return _Motion(ode, outputs | {"lateral_displacement": l_g * ca.sin(delta)})

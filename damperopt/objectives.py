@@ -14,8 +14,8 @@ from typing import Any
 
 import casadi as ca
 
-from .dampers import Linkage
 from .dynamics import effective_caster
+from .linkage import Linkage
 from .sections import area, area_for_modulus, section_modulus
 from .tyres import peak_aligning_moment, peak_side_force
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag, ValidationError, WithJsonSchema, model_validator
 
 from .errors import ConfigError
+from .joints import EndStop, Freeplay, Friction, Orifice
 from .materials import Material
 from .records import (
     Angle,
@@ -21,6 +22,7 @@ from .records import (
     LoadRange,
     Record,
     SpeedRange,
+    Stiffness,
     TorsionalDamping,
     TorsionalStiffness,
     quantity_of,
@@ -61,6 +63,7 @@ class Gear(Record):
     rake_angle: Angle = 0.0
     wheel_radius: Length
     lateral: LateralMode | None = None
+    friction: Friction | None = None
 
     @model_validator(mode="after")
     def _lateral_of_fifth_order(self) -> Self:
@@ -73,6 +76,8 @@ class _Tyre(Record):
     half_contact_length: Length
     relaxation_length: Length
     tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
+    slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
+    """Slip angle up to which the law is trusted; a simulation stops there [rad]."""
 
 
 class StringTyre(_Tyre):
@@ -124,9 +129,16 @@ class Damper(Record):
     """
 
     topology: Literal["boeing", "utas", "arreaza", "rotational"]
-    geometry: Literal["published", "planar"] = "planar"
+    geometry: Literal["published", "planar", "spatial"] = "planar"
     torsional_stiffness: TorsionalStiffness | None = None
     torsional_damping: TorsionalDamping | None = None
+    link_stiffness: Stiffness | None = None
+    """Of the torque links, laterally at the apex, in series with the linkage [N/m]."""
+    series_stiffness: Stiffness | None = None
+    """Of oil column, rod and brackets, in series with the damper [N/m]."""
+    orifice: Orifice | None = None
+    freeplay: Freeplay | None = None
+    end_stop: EndStop | None = None
 
     @model_validator(mode="after")
     def _given_for_rotational_only(self) -> Self:
@@ -143,6 +155,10 @@ class Damper(Record):
                 "belongs to topology 'rotational' only",
                 f"topology '{self.topology}' takes its stiffness and damping from the design variables",
             )
+        if self.topology == "rotational":
+            for key in ("link_stiffness", "series_stiffness", "orifice", "freeplay", "end_stop"):
+                if getattr(self, key) is not None:
+                    raise refuse(key, "topology 'rotational' has no linkage that it could belong to", "the other topologies")
         return self
 
 

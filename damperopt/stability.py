@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -30,10 +31,11 @@ def linearise(dae: DAE) -> ca.Function:
     casadi.Function
         (design, speed, load, data) -> (n, n) matrix f_x - f_z g_z^-1 g_x.
     """
-    A = ca.jacobian(dae.ode, dae.x)
-    if dae.z.numel():
-        A -= ca.jacobian(dae.ode, dae.z) @ ca.solve(ca.jacobian(dae.alg, dae.z), ca.jacobian(dae.alg, dae.x))
-    A = ca.densify(ca.substitute(A, dae.x, ca.SX.zeros(dae.x.shape)))
+    at_rest = ca.vertcat(dae.x, dae.z), ca.vertcat(ca.SX.zeros(dae.x.shape), dae.rest)
+    f_x, f_z, g_x, g_z = (
+        ca.substitute(ca.jacobian(f, v), *at_rest) for f, v in itertools.product((dae.ode, dae.alg), (dae.x, dae.z))
+    )
+    A = ca.densify(f_x - f_z @ ca.inv_minor(g_z) @ g_x if dae.z.numel() else f_x)
     return ca.Function("state_matrix", [dae.design, dae.speed, dae.load, dae.data], [A])
 
 

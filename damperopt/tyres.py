@@ -10,7 +10,16 @@ from typing import Any
 
 import casadi as ca
 
-__all__ = ["aligning_moment", "peak_aligning_moment", "peak_side_force", "side_force", "straight_tangent_stiffnesses"]
+from .elements import Elements
+
+__all__ = [
+    "aligning_moment",
+    "peak_aligning_moment",
+    "peak_side_force",
+    "side_force",
+    "slip_angle",
+    "straight_tangent_stiffnesses",
+]
 
 
 def side_force(tyre: Any, deflection: Any, load: Any) -> Any:
@@ -31,14 +40,19 @@ def side_force(tyre: Any, deflection: Any, load: Any) -> Any:
     """
     if tyre.law == "straight_tangent":
         return straight_tangent_stiffnesses(tyre)[0] * deflection / tyre.relaxation_length
-    slip = ca.atan(deflection / tyre.relaxation_length)
+    slip = slip_angle(tyre, deflection)
     if tyre.law == "linear":
         return tyre.cornering_slope * slip * load
     X = ca.atan(7 * ca.tan(slip))
     return tyre.cornering_coefficient * X * ca.cos(0.95 * X) * load
 
 
-def aligning_moment(tyre: Any, deflection: Any, load: Any) -> Any:
+def slip_angle(tyre: Any, deflection: Any) -> Any:
+    """Slip angle alpha = atan(y/sigma) [rad]."""
+    return ca.atan(deflection / tyre.relaxation_length)
+
+
+def aligning_moment(tyre: Any, deflection: Any, load: Any, elements: Elements) -> Any:
     """Self-aligning moment about the vertical.
 
     Parameters
@@ -48,6 +62,8 @@ def aligning_moment(tyre: Any, deflection: Any, load: Any) -> Any:
         String deflection y at the leading contact point [m].
     load : SX
         Vertical load F_z [N].
+    elements : Elements
+        Version of the corner at the slip limit.
 
     Returns
     -------
@@ -56,12 +72,12 @@ def aligning_moment(tyre: Any, deflection: Any, load: Any) -> Any:
     """
     if tyre.law == "straight_tangent":
         return straight_tangent_stiffnesses(tyre)[1] * deflection / tyre.relaxation_length
-    slip = ca.atan(deflection / tyre.relaxation_length)
+    slip = slip_angle(tyre, deflection)
     if tyre.law == "linear":
         return tyre.aligning_coefficient * slip * load
     limit = tyre.aligning_slip_limit
-    within = tyre.aligning_coefficient * limit / math.pi * ca.sin(math.pi * slip / limit) * load
-    return ca.if_else(ca.fabs(slip) <= limit, within, 0)
+    moment = tyre.aligning_coefficient * limit / math.pi * ca.sin(math.pi * slip / limit) * load
+    return elements.within("slip limit", slip, limit) * moment
 
 
 def straight_tangent_stiffnesses(tyre: Any) -> tuple[Any, Any]:

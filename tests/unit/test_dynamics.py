@@ -19,6 +19,7 @@ from basic_twin import (
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
+from damperopt.elements import Smooth
 from damperopt.stability import LinearModel, linearise
 from damperopt.symbols import data_values, symbolic
 
@@ -111,7 +112,7 @@ def random():
 
 def package(study):
     """x' of the package as a function of (x, V, F_z), with the numbers of `study` and DESIGN."""
-    dae = dynamics.build(symbolic(study))
+    dae = dynamics.build(symbolic(study), Smooth())
     function = ca.Function("ode", [dae.x, dae.design, dae.speed, dae.load, dae.data], [dae.ode])
     design = [DESIGN[name] for name in dae.design_names]
 

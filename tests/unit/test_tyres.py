@@ -9,9 +9,10 @@ from basic_twin import side_force as twin_force
 from scipy.integrate import trapezoid
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, GRID_SEARCH, ROUNDING
 
+from damperopt import tyres
+from damperopt.elements import Smooth
 from damperopt.specs import LinearTyre, StraightTangentTyre, StringTyre
 from damperopt.tyres import (
-    aligning_moment,
     peak_aligning_moment,
     peak_side_force,
     side_force,
@@ -20,6 +21,13 @@ from damperopt.tyres import (
 
 LOAD = 150e3
 CONTACT = {"half_contact_length": 0.1, "relaxation_length": 0.3}
+
+
+def aligning_moment(tyre, deflection, load):
+    """The law with its corner at the slip limit."""
+    return tyres.aligning_moment(tyre, deflection, load, Smooth())
+
+
 STRING = StringTyre(
     law="nonlinear", cornering_coefficient=0.002, aligning_coefficient=1.0, aligning_slip_limit=np.deg2rad(10.0), **CONTACT
 )

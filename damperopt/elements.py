@@ -1,0 +1,114 @@
+"""Corners of the nonlinear elements: freeplay, stops and dry friction, linear, smooth or switched.
+
+All of them are made of |x| and its slope: a dead band of half-width g is x + (|x - g| - |x + g|)/2, an end stop the same
+band in front of a stiff spring, dry friction the slope of |x|, an orifice v |v|. So one choice of |x| decides the version:
+
+* `Linear` for small motion about rest with the joints in contact: no gap, no stop, no friction.
+* `Smooth` for derivatives: |x| = sqrt(x^2 + w^2), with the width w in the configuration.
+* `Switched` for an exact simulation: |x| = m x, where m = +-1 is a mode that changes when x passes through zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import casadi as ca
+
+__all__ = ["Elements", "Linear", "Smooth", "Switch", "Switched"]
+
+
+class Elements(Protocol):
+    """How |x| is written."""
+
+    def absolute(self, name: str, x: Any, width: Any) -> Any:
+        """|x| of a damper speed or force."""
+
+    def sign(self, name: str, x: Any, width: Any) -> Any:
+        """Slope of |x|."""
+
+    def gap(self, name: str, x: Any, half_width: Any, width: Any) -> tuple[Any, Any]:
+        """Motion beyond a gap, and its slope."""
+
+    def contact(self, name: str, x: Any, limit: Any, width: Any) -> Any:
+        """Motion beyond a stop at +-limit."""
+
+    def within(self, name: str, x: Any, limit: Any) -> Any:
+        """1 where |x| <= limit, else 0."""
+
+
+class Linear:
+    """Small motion about rest, joints in contact."""
+
+    def absolute(self, name: str, x: Any, width: Any) -> Any:
+        return 0
+
+    def sign(self, name: str, x: Any, width: Any) -> Any:
+        return 0
+
+    def gap(self, name: str, x: Any, half_width: Any, width: Any) -> tuple[Any, Any]:
+        return x, 1
+
+    def contact(self, name: str, x: Any, limit: Any, width: Any) -> Any:
+        return 0
+
+    def within(self, name: str, x: Any, limit: Any) -> Any:
+        return 1
+
+
+class _Cornered:
+    """Dead bands out of |x| and its slope."""
+
+    def absolute(self, name: str, x: Any, width: Any) -> Any:
+        raise NotImplementedError
+
+    def sign(self, name: str, x: Any, width: Any) -> Any:
+        raise NotImplementedError
+
+    def gap(self, name: str, x: Any, half_width: Any, width: Any) -> tuple[Any, Any]:
+        upper, lower = (f"{name} +", x - half_width, width), (f"{name} -", x + half_width, width)
+        beyond = x + (self.absolute(*upper) - self.absolute(*lower)) / 2
+        return beyond, 1 + (self.sign(*upper) - self.sign(*lower)) / 2
+
+    def contact(self, name: str, x: Any, limit: Any, width: Any) -> Any:
+        return self.gap(name, x, limit, width)[0]
+
+
+class Smooth(_Cornered):
+    """|x| = sqrt(x^2 + w^2)."""
+
+    def absolute(self, name: str, x: Any, width: Any) -> Any:
+        return ca.sqrt(x**2 + width**2)
+
+    def sign(self, name: str, x: Any, width: Any) -> Any:
+        return x / ca.sqrt(x**2 + width**2)
+
+    def within(self, name: str, x: Any, limit: Any) -> Any:
+        return ca.fabs(x) <= limit
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A mode symbol that is +1 where `argument` > 0 and -1 where it is < 0."""
+
+    name: str
+    argument: ca.SX
+    mode: ca.SX
+
+
+@dataclass
+class Switched(_Cornered):
+    """|x| = m x with a mode m for each corner, collected in `switches`."""
+
+    switches: dict[str, Switch] = field(default_factory=dict)
+
+    def sign(self, name: str, x: Any, width: Any) -> Any:
+        if name not in self.switches:
+            self.switches[name] = Switch(name, ca.SX(x), ca.SX.sym(name))
+        return self.switches[name].mode
+
+    def absolute(self, name: str, x: Any, width: Any) -> Any:
+        return self.sign(name, x, width) * x
+
+    def within(self, name: str, x: Any, limit: Any) -> Any:
+        return (self.sign(f"{name} -", x + limit, 0) - self.sign(f"{name} +", x - limit, 0)) / 2

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .exchange import first_points
-from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program
+from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program, relaxable
 from .results import Infeasibility, OperatingPoint, Relaxation
 from .scan import steady_designs
 from .solve import NlpSolver
@@ -111,7 +111,7 @@ def _elastic(
             outcomes.append(outcome)
         if not solution.converged:
             return outcomes, False
-        margin = solution.extra[len(problem.constraints)]
+        margin = solution.extra[len(relaxable(problem)) - 1]
         violating = [p for p in worst if p.abscissa > -margin - problem.study.solver.margin_reserve / 2]
         if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
             return outcomes, True

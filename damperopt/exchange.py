@@ -1,18 +1,39 @@
-"""A continuous envelope with few points: solve, find the worst speed and load, add it, repeat until none violates."""
+"""A continuous envelope with few points: solve, find the worst speed and load, add it, repeat until none violates.
+
+Stability first, as it asks for no simulation; then decay, from the design found: simulate it at its worst speeds, let the
+program meet the linearised decay within a step, simulate again, until the step is nothing.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from .program import FactorProgram, HurwitzProgram, Program
+import numpy as np
+
+from .decay import DecayPoint
+from .program import CUTS, Cut, FactorProgram, HurwitzProgram, Program
 from .results import OperatingPoint
 from .solve import LocalSolution, NlpSolver
 from .worst import worst_points
 
-__all__ = ["EnvelopeSolution", "best_local", "first_points", "solve_envelope"]
+__all__ = ["DecayHold", "EnvelopeSolution", "best_local", "first_points", "solve_envelope", "solve_with_decay"]
 
 MAX_ROUNDS = 30
+
+DECAY_ROUNDS = 60
+
+FIRST_RADIUS = 1.0
+"""Longest first step of a scaled design variable with linearised decay: a factor of e."""
+
+STILL = 1e-6
+"""Step of the scaled variables that is nothing: a linearised decay ratio is then exact to its square."""
+
+SAME_SPEED = 0.05
+"""Two worst speeds closer than this part of the larger are one that has moved."""
+
+NEAR = 0.7
+"""Peaks of the decay ratio above this part of the largest are held from the start."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +46,8 @@ class EnvelopeSolution:
         Of the last round.
     worst : tuple of OperatingPoint
         Local maxima of the spectral abscissa of its design, the worst first; empty if the last round failed.
+    decay : tuple of DecayPoint
+        Local maxima of its decay ratio over the speed, the worst first; empty where none is required.
     rounds : int
     solved : bool
         True when no point of the envelope violates the margin.
@@ -34,6 +57,7 @@ class EnvelopeSolution:
     worst: tuple[OperatingPoint, ...]
     rounds: int
     solved: bool
+    decay: tuple[DecayPoint, ...] = ()
 
 
 def first_points(solver: NlpSolver) -> list[tuple[float, float]]:
@@ -85,7 +109,28 @@ def solve_envelope(
 
 
 def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
-    """Local optimum from `start` by the Hurwitz program; where that fails by the factor program, improved by the first."""
+    """Local optimum from `start` by the Hurwitz program; where that fails by the factor program, improved by the first.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    start : mapping
+        Design variables by name [SI].
+    points : sequence of (speed, load)
+        Where stability is imposed in the first round.
+
+    Returns
+    -------
+    EnvelopeSolution
+        That meets the decay requirement too, if there is one.
+    """
+    found = _best_stable(solver, start, points)
+    if solver.problem.study.required.decay is None:
+        return found
+    return solver.remembered(found.solution.design, lambda: _best_decayed(solver, found))
+
+
+def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
     found = solve_envelope(solver, start, points, HurwitzProgram)
     if found.solved:
         return found
@@ -94,6 +139,98 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
         return found
     again = solve_envelope(solver, found.solution.design, found.solution.points, HurwitzProgram)
     return again if again.solved and again.solution.objective < found.solution.objective else found
+
+
+def _best_decayed(solver: NlpSolver, found: EnvelopeSolution) -> EnvelopeSolution:
+    points = list(found.solution.points)
+    decayed = solve_with_decay(solver, found.solution.design, points, HurwitzProgram)
+    return decayed if decayed.solved else solve_with_decay(solver, found.solution.design, points, FactorProgram)
+
+
+class DecayHold:
+    """Where the decay is held, from round to round.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+        Of a study with a decay requirement.
+    """
+
+    def __init__(self, solver: NlpSolver):
+        self._problem, self._analysis = solver.problem, solver.decay
+        self._held: list[tuple[float, float]] = []
+
+    def worst(self, design: Mapping[str, float]) -> list[DecayPoint]:
+        """Peaks of the decay ratio; the high ones are held from now on."""
+        peaks = self._analysis.worst(design)
+        for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
+            self._held = [held for held in self._held if not _moved(peak, held)]
+            self._held = [*self._held, (peak.speed, peak.load)][-CUTS:]
+        return peaks
+
+    def cuts(self, design: Mapping[str, float]) -> list[Cut]:
+        """Decay at the held points, linearised about `design`."""
+        x, problem = self._problem.scaled(design), self._problem
+        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:-1]])
+        found = (self._analysis.at(design, *point, gradient=True) for point in self._held)
+        return [Cut(p.speed, p.load, float(np.log(p.ratio)), np.append(p.gradient * slopes, 0.0), x) for p in found]
+
+
+def _moved(peak: DecayPoint, held: tuple[float, float]) -> bool:
+    return peak.load == held[1] and abs(peak.speed - held[0]) <= SAME_SPEED * max(peak.speed, held[0])
+
+
+def solve_with_decay(
+    solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]], form: type[Program]
+) -> EnvelopeSolution:
+    """Local optimum that meets the decay requirement at every speed, from a design that meets the rest.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    start : mapping
+        Design variables by name [SI].
+    points : sequence of (speed, load)
+        Where stability is imposed in the first round.
+    form : type
+        `HurwitzProgram` or `FactorProgram`.
+
+    Returns
+    -------
+    EnvelopeSolution
+    """
+    study = solver.problem.study
+    required = study.required.decay
+    assert required is not None
+    allowed = -study.required.stability_margin - study.solver.margin_reserve / 2
+    least_ratio = required.ratio * (1 - study.solver.decay_reserve / 2)
+    hold, points, design, radius = DecayHold(solver), list(points), dict(start), FIRST_RADIUS
+    decay, looked = hold.worst(design), True
+    cuts = hold.cuts(design)
+    for rounds in range(1, DECAY_ROUNDS + 1):
+        solution = solver.solve(design, points, form, cuts, radius=radius)
+        if not solution.converged:
+            if radius > 8:
+                return EnvelopeSolution(solution, (), rounds, False)
+            radius *= 4
+            continue
+        step = np.abs(solution.x - solver.problem.scaled(design))[:-1].max()
+        design = solution.design
+        worst = worst_points(solver.problem.model.at(design), study.envelope, allowed)
+        new = [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
+        points += new
+        looked = step < 1e-2 or rounds % 4 == 0
+        if looked:
+            decay = hold.worst(design)
+        before, cuts = cuts, hold.cuts(design)
+        if step < STILL and looked and not new and decay[0].ratio <= least_ratio:
+            return EnvelopeSolution(solution, tuple(worst), rounds, worst[0].abscissa <= allowed, tuple(decay))
+        at_same = {(c.speed, c.load): c for c in before}
+        error = max(
+            (abs(c.value - at_same[c.speed, c.load].at(c.centre)) for c in cuts if (c.speed, c.load) in at_same), default=1.0
+        )
+        radius = radius / 3 if error > 0.3 else min(2 * radius, FIRST_RADIUS) if error < 0.05 else radius
+    return EnvelopeSolution(solution, (), rounds, False)
 
 
 def _close(point: OperatingPoint, used: tuple[float, float]) -> bool:

@@ -10,6 +10,10 @@ Each comes with two ways to say "stable with the margin at these speeds and load
 
 Stability is imposed at slots, each a speed and a load given as parameters, so that one program serves every round of the
 exchange; slots without a point impose nothing.
+
+Decay is imposed by cuts: ln(decay ratio) at one speed and load with its gradient, both from an integrator, as a linear
+function of the scaled variables about the design where it was simulated. The exchange renews them until the solution is
+that design, so that the multipliers are those of the decay itself.
 """
 
 from __future__ import annotations
@@ -26,15 +30,49 @@ from .hurwitz import characteristic_polynomial, lienard_chipart
 from .problem import DesignProblem
 
 __all__ = [
+    "CUTS",
+    "Cut",
     "ElasticFactorProgram",
     "ElasticHurwitzProgram",
     "FactorProgram",
     "HurwitzProgram",
     "Instance",
     "Program",
+    "relaxable",
 ]
 
 Points = Sequence[tuple[float, float]]
+
+CUTS = 12
+"""Decay cuts that a program has room for."""
+
+EXCESS_PRICE = 1e3
+"""kg per unit of ln(decay ratio) by which cuts may be exceeded: far above any multiplier, so that it is 0 where it can be."""
+
+
+@dataclass(frozen=True)
+class Cut:
+    """ln(decay ratio) at one speed and load to first order.
+
+    Attributes
+    ----------
+    speed, load : float
+        [m/s], [N]
+    value : float
+        At the centre.
+    gradient, centre : ndarray
+        (n,) with respect to the scaled variables, and where it was taken.
+    """
+
+    speed: float
+    load: float
+    value: float
+    gradient: np.ndarray
+    centre: np.ndarray
+
+    def at(self, x: np.ndarray) -> float:
+        """Its value at scaled variables."""
+        return float(self.value + self.gradient @ (x - self.centre))
 
 
 @dataclass(frozen=True)
@@ -66,8 +104,14 @@ class Program(Protocol):
     def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance: ...
 
 
+def relaxable(problem: DesignProblem) -> tuple[str, ...]:
+    """Names of the constraints that an elastic program can relax: strength and geometry rows, decay, margin."""
+    decay = ("decay_ratio",) if problem.study.required.decay is not None else ()
+    return (*problem.constraint_names, *decay, "stability_margin")
+
+
 class _Slots:
-    """Variables, parameters, mass, strength and geometry rows, and the shifted polynomial at every slot."""
+    """Variables, parameters, mass, strength, geometry and decay rows, and the shifted polynomial at every slot."""
 
     def __init__(self, problem: DesignProblem, slots: int, margin: ca.SX | None = None):
         self.problem, self.slots, self.order = problem, slots, len(problem.model.state_names)
@@ -78,6 +122,14 @@ class _Slots:
         V, F_z, self.rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
         self.mass, self.rows = problem.mass_and_rows(design, rod, data, load_limit)
         self.p = ca.vertcat(data, load_limit, V, F_z, self.rate)
+        self.decay_rows, self.excess = ca.SX(0, 1), ca.SX(0, 1)
+        if problem.study.required.decay is not None:
+            self.excess = ca.SX.sym("excess")
+            value, gradient = ca.SX.sym("value", CUTS), ca.SX.sym("gradient", CUTS, self.x.numel())
+            ratio = data[problem.data_names.index("requirements.decay.ratio")]
+            # value: ln(decay ratio) of the cut extrapolated to x = 0
+            self.decay_rows = value + gradient @ self.x - ca.log(ratio) - np.log1p(-problem.study.solver.decay_reserve)
+            self.p = ca.vertcat(self.p, value, ca.vec(gradient))
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
@@ -86,7 +138,7 @@ class _Slots:
         ]
 
     def numbers(
-        self, design: Mapping[str, float], points: Points, margin: float | None = None
+        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut], margin: float | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Common parameters; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem
@@ -96,7 +148,20 @@ class _Slots:
         shift += problem.study.required.stability_margin if margin is None else margin
         roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + shift
         rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
-        return np.concatenate([problem.data, [problem.load_limit], V, F_z, rates]), roots, rates
+        p = [problem.data, [problem.load_limit], V, F_z, rates]
+        if self.decay_rows.numel():
+            value, gradient = np.full(CUTS, -1e3), np.zeros((CUTS, self.x.numel()))
+            for i, cut in enumerate(cuts):
+                value[i], gradient[i] = cut.value - cut.gradient @ cut.centre, cut.gradient
+            p += [value, gradient.ravel(order="F")]
+        return np.concatenate(p), roots, rates
+
+    def box(self, design: Mapping[str, float], radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Scaled variables of a design and their bounds, no design variable further than `radius` from it."""
+        lower, upper = self.problem.bounds()
+        x0 = np.clip(self.problem.scaled(design), lower, upper)
+        around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
+        return x0, np.maximum(lower, x0 - around), np.minimum(upper, x0 + around)
 
 
 class _HurwitzConditions:
@@ -186,20 +251,30 @@ class _MassProgram:
     def __init__(self, problem: DesignProblem, slots: int):
         self._common = common = _Slots(problem, slots)
         self._stability = stability = self.stability_type(common)
+        excess = ca.sum1(common.excess)
         self.nlp = {
-            "x": ca.vertcat(common.x, stability.variables),
+            "x": ca.vertcat(common.x, common.excess, stability.variables),
             "p": ca.vertcat(common.p, stability.parameters),
-            "f": common.mass,
-            "g": ca.vertcat(common.rows, stability.rows),
+            "f": common.mass + EXCESS_PRICE * excess,
+            "g": ca.vertcat(common.rows, common.decay_rows - excess, stability.rows),
         }
 
-    def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance:
-        """The program at `points`, started and scaled at `design`; it has no options."""
-        problem, rows = self._common.problem, self._common.rows.numel()
-        p, roots, rates = self._common.numbers(design, points)
-        lower, upper = problem.bounds()
-        x0 = np.clip(problem.scaled(design), lower, upper)
-        own = Instance(x0, lower, upper, np.full(rows, -np.inf), np.zeros(rows), p)
+    def instance(
+        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), radius: float = np.inf, **options: Any
+    ) -> Instance:
+        """The program at `points`, started and scaled at `design`, no design variable further than `radius` from there."""
+        common = self._common
+        p, roots, rates = common.numbers(design, points, cuts)
+        x0, lower, upper = common.box(design, radius)
+        none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
+        own = Instance(
+            np.append(x0, none),
+            np.append(lower, none),
+            np.append(upper, none + np.inf),
+            np.full(rows, -np.inf),
+            np.zeros(rows),
+            p,
+        )
         return _joined(own, self._stability.instance(roots, rates, len(points)))
 
 
@@ -240,32 +315,41 @@ class _ElasticProgram:
         self._common = common = _Slots(problem, slots, margin)
         self._stability = stability = self.stability_type(common)
         self._margin = required = problem.study.required.stability_margin
-        self._names = (*problem.constraint_names, "stability_margin")
-        slack = ca.SX.sym("slack", common.rows.numel())
-        prices = ca.DM([1.0 if c.ratio else 10.0 for c in problem.constraints])
+        names = relaxable(problem)
+        slack, excess = ca.SX.sym("slack", len(names) - 1), common.excess
+        prices = ca.DM([1.0] * slack.numel())
+        prices[: len(problem.constraints)] = [1.0 if c.ratio else 10.0 for c in problem.constraints]
+        rows = common.rows.numel()
+        self._names = names
         self.nlp = {
-            "x": ca.vertcat(common.x, slack, margin, stability.variables),
+            "x": ca.vertcat(common.x, slack, margin, excess, stability.variables),
             "p": ca.vertcat(common.p, stability.parameters),
-            "f": ca.dot(prices, slack) + (required - margin) / max(required, 0.1),
-            "g": ca.vertcat(common.rows - slack, stability.rows),
+            "f": ca.dot(prices, slack) + (required - margin) / max(required, 0.1) + EXCESS_PRICE * ca.sum1(excess),
+            "g": ca.vertcat(
+                common.rows - slack[:rows], common.decay_rows - ca.sum1(slack[rows:]) - ca.sum1(excess), stability.rows
+            ),
         }
 
-    def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance:
+    def instance(
+        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), radius: float = np.inf, **options: Any
+    ) -> Instance:
         """The program at `points`, started at `design`; the constraints named in the option `relaxed` may give way."""
         common, problem = self._common, self._common.problem
         may_move = np.array([name in options["relaxed"] for name in self._names])
-        slack = np.maximum(list(problem.rows(design).values()), 0.0) + 1e-3
+        slack = np.zeros(len(self._names) - 1)
+        slack[: len(problem.constraints)] = np.maximum(list(problem.rows(design).values()), 0.0)
         abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
         kept = min(self._margin, -abscissa - 2 * problem.study.solver.margin_reserve)
-        start = np.where(may_move, np.append(slack, kept), np.append(np.zeros(slack.size), self._margin))
-        p, roots, rates = common.numbers(design, points, margin=float(start[-1]))
-        lower, upper = problem.bounds()
+        start = np.where(may_move, np.append(slack + 1e-3, kept), np.append(np.zeros(slack.size), self._margin))
+        p, roots, rates = common.numbers(design, points, cuts, margin=float(start[-1]))
+        x0, lower, upper = common.box(design, radius)
+        none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
         own = Instance(
-            np.concatenate([np.clip(problem.scaled(design), lower, upper), start]),
-            np.concatenate([lower, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin]]),
-            np.concatenate([upper, np.where(may_move[:-1], np.inf, 0.0), [self._margin]]),
-            np.full(slack.size, -np.inf),
-            np.zeros(slack.size),
+            np.concatenate([x0, start, none]),
+            np.concatenate([lower, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin], none]),
+            np.concatenate([upper, np.where(may_move[:-1], np.inf, 0.0), [self._margin], none + np.inf]),
+            np.full(rows, -np.inf),
+            np.zeros(rows),
             p,
         )
         return _joined(own, self._stability.instance(roots, rates, len(points)))

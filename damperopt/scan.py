@@ -1,4 +1,4 @@
-"""Promising starts: the lightest layout at each torsional stiffness, with the least damping that is stable there.
+"""Promising starts: the lightest layout at each torsional stiffness, with the least damping that is enough there.
 
 The damper enters the linear gear through (k_psi, c_psi) alone, and at a given k_psi less damping is never heavier. So
 along the lower border of the stable region the design problem has one dimension left, and its local minima there are
@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from .problem import DesignProblem
-from .screening import least_conditions, worst_abscissae
+from .screening import least_conditions, linear_decay, worst_abscissae
 from .solve import raise_if_interrupted
 
 __all__ = ["ScanPoint", "promising_designs", "sobol_designs", "steady_designs", "stiffness_scan"]
@@ -77,7 +77,11 @@ def stiffness_scan(problem: DesignProblem) -> list[ScanPoint]:
     """
     k, c, start = _reachable(problem)
     K, C = np.meshgrid(k, c, indexing="ij")
-    stable = least_conditions(problem.study, K.ravel(), C.ravel()).reshape(K.shape) > 0
+    stable = least_conditions(problem.study, K.ravel(), C.ravel()) > 0
+    decay = problem.study.required.decay
+    if decay is not None:
+        stable[stable] = linear_decay(problem.study, K.ravel()[stable], C.ravel()[stable]) <= decay.ratio
+    stable = stable.reshape(K.shape)
     layouts, points = _Layouts(problem, start), []
     for i in np.flatnonzero(stable.any(axis=1)):
         point = layouts.lightest(k[i], c[int(stable[i].argmax())])

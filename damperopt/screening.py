@@ -14,7 +14,7 @@ from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .specs import Damper, Study
 from .stability import linear_gear, spectral_abscissa
 
-__all__ = ["least_conditions", "worst_abscissae"]
+__all__ = ["least_conditions", "linear_decay", "worst_abscissae"]
 
 SPEEDS = 24
 STIFFNESS, DAMPING = 1e5, 1e3  # of the second and third matrix; any numbers of the right size
@@ -74,6 +74,47 @@ def worst_abscissae(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.nd
     return worst
 
 
+def linear_decay(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.ndarray:
+    """Largest decay ratio of each (k_psi, c_psi) over a few points of the envelope, by modal superposition.
+
+    Parameters
+    ----------
+    study : Study
+        With a decay requirement.
+    k_psi, c_psi : ndarray
+        (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
+
+    Returns
+    -------
+    ndarray
+        (m,) of the linear gear; infinite where it grows.
+    """
+    required = study.required.decay
+    assert required is not None
+    V, F_z = _points(study, SPEEDS // 3)
+    base, per_k, per_c = _affine_matrices(study, V, F_z)
+    x0 = np.array(required.disturbance.start(linear_gear(study.replace(damper=_damper(0.0, 0.0))).state_names))
+    cycles = np.linspace(0, required.cycles + 1.5, int(24 * (required.cycles + 1.5)))
+    worst = np.zeros(k_psi.size)
+    for j in range(V.size):
+        A = base[j] + np.multiply.outer(k_psi / STIFFNESS, per_k[j] - base[j])
+        A += np.multiply.outer(c_psi / DAMPING, per_c[j] - base[j])
+        roots, modes = np.linalg.eig(A)
+        parts = np.linalg.solve(modes, np.broadcast_to(x0 + 0j, (k_psi.size, x0.size))[..., None])[..., 0] * modes[:, 0, :]
+        slowest = np.where(np.abs(roots.imag) > 1.0, np.abs(roots.imag), np.inf).min(axis=1)
+        period = 2 * np.pi / np.minimum(slowest, np.sqrt(np.maximum(-A[:, 1, 0], 1.0)))
+        exponent = roots[:, :, None] * (period[:, None] * cycles)[:, None, :]
+        psi = np.einsum("mi,mit->mt", parts, np.exp(np.minimum(exponent.real, 50.0) + 1j * exponent.imag)).real
+        passed = np.cumsum(psi[:, 1:] * psi[:, :-1] < 0, axis=1) >= 2 * required.cycles
+        later = np.abs(np.where(passed | (cycles[1:] > 2 * required.cycles), psi[:, 1:], 0.0)).max(axis=1)
+        worst = np.maximum(worst, later / np.abs(psi[:, : 24 * 2]).max(axis=1))
+    return worst
+
+
+def _damper(k_psi: float, c_psi: float) -> Damper:
+    return Damper(topology="rotational", torsional_stiffness=k_psi, torsional_damping=c_psi)
+
+
 def _points(study: Study, speeds: int, more: Sequence[tuple[float, float]] = ()) -> tuple[np.ndarray, np.ndarray]:
     envelope = study.envelope
     grid = np.unique(np.geomspace(envelope.speed.min, envelope.speed.max, speeds))
@@ -83,10 +124,7 @@ def _points(study: Study, speeds: int, more: Sequence[tuple[float, float]] = ())
 
 def _affine_matrices(study: Study, V: np.ndarray, F_z: np.ndarray) -> list[np.ndarray]:
     """State matrices without damper, with the stiffness `STIFFNESS` alone, and with the damping `DAMPING` alone."""
-    dampers = (
-        Damper(topology="rotational", torsional_stiffness=k, torsional_damping=c)
-        for k, c in ((0.0, 0.0), (STIFFNESS, 0.0), (0.0, DAMPING))
-    )
+    dampers = (_damper(k, c) for k, c in ((0.0, 0.0), (STIFFNESS, 0.0), (0.0, DAMPING)))
     return [linear_gear(study.replace(damper=damper)).matrices(V, F_z) for damper in dampers]
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from .disturbances import Disturbance, Kick, Release
 from .materials import Material
 from .records import (
     Coordinate,
@@ -17,13 +18,22 @@ from .records import (
     Number,
     Rate,
     Record,
+    Speed,
     Stress,
     Torque,
     refuse,
 )
 from .units import Quantity
 
-__all__ = ["Fatigue", "MassModel", "Requirements", "Section"]
+__all__ = ["DecayRequirement", "Fatigue", "MassModel", "Requirements", "Section"]
+
+
+def _fraction(found: Any) -> Any:
+    """1/3 as a number; everything else as it is."""
+    parts = found.split("/") if isinstance(found, str) else ()
+    if len(parts) == 2 and all(part.strip().isdigit() for part in parts) and int(parts[1]):
+        return int(parts[0]) / int(parts[1])
+    return found
 
 
 class Fatigue(Record):
@@ -33,11 +43,38 @@ class Fatigue(Record):
     cycles: Annotated[float, Quantity("1", at_least=1)] = 1e6
 
 
+class DecayRequirement(Record):
+    """|yaw| <= `ratio` times its first extremum at all times after `cycles` cycles that follow a disturbance."""
+
+    ratio: Annotated[float, Quantity("1", above=0, below=1, example="1/3"), BeforeValidator(_fraction)] = 1 / 3
+    cycles: Annotated[int, Field(ge=1, le=100)] = 3
+    release: Release | None = None
+    kick: Kick | None = None
+    speeds: list[Speed] | None = None
+    """Speeds to look at [m/s]; left out: the worst of the envelope is sought."""
+
+    @model_validator(mode="after")
+    def _one_disturbance(self) -> Self:
+        if (self.release is None) == (self.kick is None):
+            raise refuse("", "release and kick" if self.release else "neither release nor kick", "one of the two")
+        if not any(name.startswith("yaw") for name, value in self.disturbance.initial_values.items() if value):
+            raise refuse("", "a disturbance without yaw", "a yaw_angle or yaw_rate other than 0")
+        if self.speeds is not None and not self.speeds:
+            raise refuse("speeds", "an empty list", "one speed or more, or leave it out")
+        return self
+
+    @property
+    def disturbance(self) -> Disturbance:
+        return Disturbance(release=self.release, kick=self.kick)
+
+
 class Requirements(Record):
     """What a design must meet; limits are inclusive."""
 
     stability_margin: Rate
     """Spectral abscissa <= -stability_margin at every speed and load [1/s]."""
+    decay: DecayRequirement | None = None
+    """On the nonlinear model, at every speed and load, after a release or a kick."""
     limit_torque: Torque | None = None
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
 
+from .decay import DecayAnalysis
 from .problem import DesignProblem
-from .program import HurwitzProgram, Instance, Program
+from .program import Cut, HurwitzProgram, Instance, Program
 
 __all__ = ["LocalSolution", "NlpSolver", "raise_if_interrupted"]
+
+T = TypeVar("T")
 
 _OPTIONS: dict[str, Any] = {
     "print_time": False,
@@ -42,8 +46,14 @@ class LocalSolution:
         Mass [kg]; the price of the relaxation for the elastic program.
     extra : ndarray
         Variables of the program beyond those of the design.
+    x : ndarray
+        Scaled variables.
     row_multipliers, bound_multipliers : ndarray
         Of the strength and geometry rows (>= 0) and of the bounds of the scaled variables (positive at an upper bound).
+    cuts : tuple of Cut
+        Decay cuts of the solution.
+    cut_multipliers : ndarray
+        (m,) of the decay cuts.
     data_gradient : ndarray
         Derivative of the optimal objective with respect to the study's numbers, by the envelope theorem (its Lagrangian's).
     load_limit_gradient : float
@@ -64,8 +74,11 @@ class LocalSolution:
     design: dict[str, float]
     objective: float
     extra: np.ndarray
+    x: np.ndarray
     row_multipliers: np.ndarray
     bound_multipliers: np.ndarray
+    cuts: tuple[Cut, ...]
+    cut_multipliers: np.ndarray
     data_gradient: np.ndarray
     load_limit_gradient: float
     point_gradient: np.ndarray
@@ -86,15 +99,30 @@ class NlpSolver:
     def __init__(self, problem: DesignProblem):
         self.problem = problem
         self._built: dict[tuple[type[Program], int], _Built] = {}
+        self._remembered: dict[tuple[float, ...], Any] = {}
+
+    @cached_property
+    def decay(self) -> DecayAnalysis:
+        """Simulations of the study's gear, for studies with a decay requirement."""
+        return DecayAnalysis(self.problem.study)
+
+    def remembered(self, design: Mapping[str, float], work: Callable[[], T]) -> T:
+        """What `work` returns; not done again for a design that it was done for, to four digits."""
+        key = tuple(float(f"{design[name]:.4e}") for name in self.problem.design_names)
+        if key not in self._remembered:
+            self._remembered[key] = work()
+        found: T = self._remembered[key]
+        return found
 
     def solve(
         self,
         design: Mapping[str, float],
         points: Sequence[tuple[float, float]],
         form: type[Program] = HurwitzProgram,
+        cuts: Sequence[Cut] = (),
         **options: Any,
     ) -> LocalSolution:
-        """Local solution from `design` with stability imposed at `points`.
+        """Local solution from `design` with stability imposed at `points` and decay by `cuts`.
 
         Parameters
         ----------
@@ -103,6 +131,7 @@ class NlpSolver:
         points : sequence of (speed, load)
         form : type
             Program class.
+        cuts : sequence of Cut
         **options : object
             Passed to `Program.instance`.
 
@@ -111,7 +140,7 @@ class NlpSolver:
         LocalSolution
         """
         built = self._program(form, len(points))
-        it = built.program.instance(design, points, **options)
+        it = built.program.instance(design, points, cuts=cuts, **options)
         result = built.solver(x0=it.x0, p=it.p, lbx=it.lbx, ubx=it.ubx, lbg=it.lbg, ubg=it.ubg)
         stats = built.solver.stats()
         raise_if_interrupted(stats)
@@ -127,8 +156,11 @@ class NlpSolver:
             design=self.problem.unscaled(x[:variables]),
             objective=float(result["f"]),
             extra=x[variables:],
+            x=x[:variables],
             row_multipliers=lam_g[:rows],
             bound_multipliers=lam_x[:variables],
+            cuts=tuple(cuts),
+            cut_multipliers=lam_g[rows : rows + len(cuts)],
             data_gradient=by_parameter[:data],
             load_limit_gradient=float(by_parameter[data]),
             point_gradient=by_parameter[data + 1 : data + 1 + 2 * built.slots].reshape(2, -1)[:, : len(points)].T,

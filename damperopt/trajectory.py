@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-__all__ = ["Motion", "Trajectory", "crossings", "extrema", "motion_of"]
+__all__ = ["Decay", "Motion", "Trajectory", "crossings", "decay", "extrema", "hermite", "motion_of"]
 
 Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "growing", "diverging"]
 
@@ -112,34 +112,107 @@ def crossings(time: np.ndarray, value: np.ndarray, slope: np.ndarray) -> np.ndar
     start[start == 0] = -np.sign(slope[left][start == 0])
     for _ in range(52):  # bisection: every bit of the fraction of the interval
         middle = (low + high) / 2
-        before = np.sign(_hermite(middle, value[left], value[left + 1], h * slope[left], h * slope[left + 1])) == start
+        before = np.sign(hermite(middle, value[left], value[left + 1], h * slope[left], h * slope[left + 1])) == start
         low, high = np.where(before, middle, low), np.where(before, high, middle)
     return time[left] + (low + high) / 2 * h
 
 
-def extrema(time: np.ndarray, value: np.ndarray, rate: np.ndarray, acceleration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def extrema(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Extrema of a function inside its samples.
 
     Parameters
     ----------
-    time, value, rate, acceleration : ndarray
-        (n,) samples of the function and of its first two derivatives.
+    time, value, rate : ndarray
+        (n,) samples of the function and of its derivative, n >= 3.
 
     Returns
     -------
     tuple of ndarray
-        Times, and values from the cubic Hermite interpolant.
+        Times, and values from the cubic Hermite interpolant. An error of the time hardly matters to the value there, so
+        that differences of the rate are good enough as its slope.
     """
-    times = crossings(time, rate, acceleration)
+    times = crossings(time, rate, np.gradient(rate, time, edge_order=2))
     i = np.clip(np.searchsorted(time, times, "right") - 1, 0, time.size - 2)
     h = time[i + 1] - time[i]
-    return times, _hermite((times - time[i]) / h, value[i], value[i + 1], h * rate[i], h * rate[i + 1])
+    return times, hermite((times - time[i]) / h, value[i], value[i + 1], h * rate[i], h * rate[i + 1])
 
 
-def _hermite(u, left, right, left_slope, right_slope):
-    """Cubic on [0, 1] from values and slopes at its ends."""
+def hermite(u, left, right, left_slope, right_slope):
+    """Cubic on [0, 1] at u, from values and slopes at its ends."""
     bulge = (1 - u) * (left_slope - (right - left)) - u * (right_slope - (right - left))
     return left + u * (right - left) + u * (1 - u) * bulge
+
+
+@dataclass(frozen=True)
+class Decay:
+    """Decay of an oscillation, and where it was read.
+
+    Attributes
+    ----------
+    ratio : float
+        Largest |value| after the cycles over the first extremum.
+    first, last : float
+        Times of the two extrema [s].
+    counted : bool
+        False where the cycles were not completed before `latest`, which then took their place.
+    """
+
+    ratio: float
+    first: float
+    last: float
+    counted: bool
+
+
+def decay(
+    time: np.ndarray,
+    value: np.ndarray,
+    rate: np.ndarray,
+    cycles: int,
+    latest: float = np.inf,
+) -> Decay | None:
+    """Decay over m cycles: the largest |value| after the 2m-th zero that follows the first extremum, over that extremum.
+
+    Parameters
+    ----------
+    time, value, rate : ndarray
+        (n,) samples of an oscillation and of its derivative; starting at rest counts as an extremum.
+    cycles : int
+        m
+    latest : float
+        Time [s] from which the decay is taken at the latest, for motions so damped that they hardly oscillate.
+
+    Returns
+    -------
+    Decay or None
+        None where the samples end before the extremum that follows.
+
+    Examples
+    --------
+    >>> t = np.linspace(0, 4, 2000)
+    >>> s = -0.5 + 2j * np.pi
+    >>> z = np.exp(s * t) * (1 + 0.5j / np.pi / 2)  # released at rest
+    >>> found = decay(t, z.real, (s * z).real, cycles=3)
+    >>> round(found.ratio, 6) == round(np.exp(-1.5), 6)
+    True
+    """
+    zeros = crossings(time, value, rate)
+    turns, heights = extrema(time, value, rate)
+    if abs(rate[0]) <= 1e-12 * np.abs(rate).max() and value[0] != 0:
+        turns, heights = np.append(time[0], turns), np.append(value[0], heights)
+    if not turns.size:
+        return None
+    zeros = zeros[zeros > turns[0]]
+    counted = zeros.size >= 2 * cycles and zeros[2 * cycles - 1] <= latest
+    start = zeros[2 * cycles - 1] if counted else latest
+    after = turns > start
+    if counted and after.any():
+        peak = np.abs(heights[after]).argmax()
+        return Decay(float(abs(heights[after][peak] / heights[0])), float(turns[0]), float(turns[after][peak]), True)
+    if not counted and time[-1] >= latest:
+        later = np.flatnonzero(time >= latest)
+        peak = later[np.abs(value[later]).argmax()]
+        return Decay(float(abs(value[peak] / heights[0])), float(turns[0]), float(time[peak]), False)
+    return None
 
 
 def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
@@ -157,14 +230,13 @@ def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
     """
     t, psi, rate = trajectory.time, trajectory["yaw_angle"], trajectory["yaw_rate"]
     zeros = crossings(t, psi, rate)
-    turns, values = extrema(t, psi, rate, trajectory["yaw_acceleration"])
+    turns, values = extrema(t, psi, rate)
     if rate[0] == 0 and psi[0] != 0:
         turns, values = np.append(t[0], turns), np.append(psi[0], values)
     peaks = {name: float(np.abs(v).max()) for name, v in {**trajectory.states, **trajectory.outputs}.items()}
     counted = zeros[zeros > turns[0]] if turns.size else zeros[:0]
-    ratio = None
-    if counted.size >= 2 * cycles and (turns > counted[2 * cycles - 1]).any():
-        ratio = float(np.abs(psi[t >= counted[2 * cycles - 1]]).max() / abs(values[0]))
+    found = decay(t, psi, rate, cycles)
+    ratio = found.ratio if found else None
     amplitudes, middles = np.abs(np.diff(values)) / 2, (values[1:] + values[:-1]) / 2
     done = max(counted.size - 1, 0) / 2
     if amplitudes.size < 6:

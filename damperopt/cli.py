@@ -36,6 +36,9 @@ __all__ = ["app", "main"]
 
 FEW_STARTS = 24
 
+DECAY_STARTS = 8
+"""Starts without a decay requirement that take as long as one with it."""
+
 app = typer.Typer(
     name="damperopt",
     help="Lightest shimmy damper for a landing gear, proved stable at every speed of its envelope.",
@@ -297,7 +300,8 @@ def _choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:
 
 def _workers(studies: Sequence[Study]) -> int:
     """One process per core, or one alone for few starts: new processes take as long to start as 20 starts to solve."""
-    if sum(study.solver.starts for study in studies) <= FEW_STARTS:
+    decays = studies[0].requirements is not None and studies[0].requirements.decay is not None
+    if sum(study.solver.starts for study in studies) * (DECAY_STARTS if decays else 1) <= FEW_STARTS:
         return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -6,8 +6,8 @@ A constraint remembers who declared it, so that results and infeasibility report
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import casadi as ca
 
@@ -35,6 +35,8 @@ class Constraint:
         Key paths of the study's numbers that would relax it.
     ratio : bool
         Scale by logarithms: for positive quantities that range over decades. Otherwise by `limit` units of 1.
+    kind : str
+        ``strength`` or ``geometry``.
     """
 
     name: str
@@ -44,6 +46,7 @@ class Constraint:
     unit: str
     relaxed_by: tuple[str, ...]
     ratio: bool = False
+    kind: Literal["strength", "geometry"] = "geometry"
 
     @property
     def row(self) -> Any:
@@ -89,7 +92,7 @@ def strength(study: Any, design: Mapping[str, Any], event: LimitEvent, rod_diame
     least_stroke = required.stroke_ratio * required.apex_clearance
     relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
     blocks.append(Constraint("working_stroke", event.stroke, least_stroke, True, "m", relaxed, ratio=True))
-    return blocks
+    return [replace(block, kind="strength") for block in blocks]
 
 
 def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any) -> list[Constraint]:

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+import casadi as ca
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
 from .dae import DAE
@@ -17,7 +19,7 @@ from .integrators import Integrator, best_engine
 from .specs import Study
 from .stability import LinearModel
 from .symbols import data_values, symbolic
-from .trajectory import Decay, decay, hermite
+from .trajectory import Decay, decay
 
 __all__ = ["DecayAnalysis", "DecayPoint", "latest_count", "loads_of"]
 
@@ -27,8 +29,17 @@ PER_CYCLE = 64
 STRETCH_CYCLES = 4
 """Cycles of the fastest mode in one call of the integrator."""
 
+MAX_STRETCHES = 80
+"""Calls after which a motion that has not completed its cycles is judged as it is: its yaw creeps."""
+
+SETTLED = 1e-2
+"""Part of the required ratio below which nothing more can matter."""
+
 MORE_CYCLES = 2
 """Cycles that are looked at beyond those counted."""
+
+DIFFERENCE = 1e-4
+"""Relative step of the differences with respect to the numbers of a study."""
 
 DIVERGED = 100.0
 """Growth of the yaw angle at which a simulation is given up: the ratio is then this large, or larger."""
@@ -67,7 +78,10 @@ class DecayAnalysis:
         self.study, self.requirement = study, study.required.decay
         self.model = LinearModel(study)
         self._dae: DAE = build(symbolic(study), Smooth())
-        self._x0 = np.array(self.requirement.disturbance.start(self._dae.state_names))
+        self._data = np.array(data_values(study))
+        slopes = ca.jacobian(ca.vertcat(self._dae.ode, self._dae.alg), self._dae.data)
+        self._moving = ca.DM(slopes.sparsity(), 1).full().any(axis=0)
+        self._disturbance = f"requirements.decay.{'release' if self.requirement.release else 'kick'}"
 
     def _integrator(self, sensitivities: bool) -> Integrator:
         solver = self.study.solver
@@ -83,7 +97,14 @@ class DecayAnalysis:
     def _with_sensitivities(self) -> Integrator:
         return self._integrator(True)
 
-    def at(self, design: Mapping[str, float], speed: float, load: float, gradient: bool = False) -> DecayPoint:
+    def at(
+        self,
+        design: Mapping[str, float],
+        speed: float,
+        load: float,
+        gradient: bool = False,
+        data: np.ndarray | None = None,
+    ) -> DecayPoint:
         """Decay at one operating point.
 
         Parameters
@@ -94,6 +115,8 @@ class DecayAnalysis:
             [m/s], [N]
         gradient : bool
             Its derivatives as well, from forward sensitivities.
+        data : ndarray or None
+            Numbers of the study, in the order of `data_names`; None: its own.
 
         Returns
         -------
@@ -101,30 +124,71 @@ class DecayAnalysis:
         """
         integrator = self._with_sensitivities if gradient else self._plain
         values = [design[name] for name in self._dae.design_names]
-        A = self.model.at(design).matrices(speed, load)[0]
+        data = self._data if data is None else data
+        start_of = dict(zip(self._dae.data_names, data, strict=True))
+        x0 = np.array([start_of.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
+        A = self.model.state_matrix(ca.DM(values), speed, load, data).full()
         stretch = STRETCH_CYCLES * 2 * math.pi / max(np.abs(np.linalg.eigvals(A).imag).max(), 20.0)
-        cycles, latest = self.requirement.cycles, latest_count(A, self.requirement.cycles)
-        x, S, start = self._x0, None, 0.0
+        required, latest = self.requirement, latest_count(A, self.requirement.cycles)
+        nothing = np.zeros(len(values) if gradient else 0)
+        x, S, start = x0, None, 0.0
         parts: list[np.ndarray] = []
-        while True:
+        for _ in range(MAX_STRETCHES):
             try:
-                found = integrator(x, values, speed, load, stretch, start, S)
+                found = integrator(x, values, speed, load, stretch, start, S, data=data)
             except FloatingPointError:
-                return DecayPoint(speed, load, DIVERGED, np.zeros(len(values) if gradient else 0))
+                return DecayPoint(speed, load, DIVERGED, nothing)
             x, S = found.x[:, -1], found.sensitivities[:, :, -1] if gradient else None
             # yaw, its rate, and the sensitivities of both, row by row
             rows = np.vstack([found.x[:2], *(found.sensitivities[:2].reshape(-1, found.x.shape[1]))])
             parts.append(rows[:, 1 if parts else 0 :])
             start += stretch
+            first = np.abs(parts[0][0]).max()
+            if abs(x[0]) > DIVERGED * first:
+                return DecayPoint(speed, load, DIVERGED, nothing)
+            settled = np.abs(rows[0]).max() < SETTLED * required.ratio * first and len(parts) > 1
             history = np.hstack(parts)
             time = np.linspace(0, start, history.shape[1])
-            first = np.abs(history[0, : PER_CYCLE * STRETCH_CYCLES]).max()
-            if abs(x[0]) > DIVERGED * first:
-                return DecayPoint(speed, load, DIVERGED, np.zeros(len(values) if gradient else 0))
-            answer = decay(time, history[0], history[1], cycles, latest)
-            settled = np.abs(rows[0]).max() < 1e-2 * self.requirement.ratio * first and start > latest
-            if answer is not None and (settled or start >= answer.last + MORE_CYCLES * (answer.last - answer.first) / cycles):
+            answer = decay(time, history[0], history[1], required.cycles, min(latest, start) if settled else latest)
+            if answer is None:
+                continue
+            if settled or start >= answer.last + MORE_CYCLES * (answer.last - answer.first) / required.cycles:
                 return DecayPoint(speed, load, answer.ratio, _gradient(time, history, answer))
+        answer = decay(time, history[0], history[1], required.cycles, 0.9 * start)
+        ratio = answer.ratio if answer else 1.0
+        return DecayPoint(speed, load, ratio, _gradient(time, history, answer) if answer else nothing)
+
+    def data_gradient(self, design: Mapping[str, float], speed: float, load: float) -> dict[str, float]:
+        """d ln(ratio)/d number of the study, by central differences.
+
+        Parameters
+        ----------
+        design : mapping
+            Design variables by name [SI].
+        speed, load : float
+            [m/s], [N]
+
+        Returns
+        -------
+        dict
+            By key path; ``speed`` and ``load`` for the operating point. Numbers without effect are left out.
+        """
+
+        slopes, h = {}, DIFFERENCE
+        for i, name in enumerate(self._dae.data_names):
+            if not self._moving[i] and not name.startswith(self._disturbance):
+                continue
+            width = h * (abs(self._data[i]) or 1.0)
+            up, down = self._data.copy(), self._data.copy()
+            up[i] += width
+            down[i] -= width
+            above, below = (self.at(design, speed, load, data=data) for data in (up, down))
+            slopes[name] = math.log(above.ratio / below.ratio) / (2 * width)
+        above, below = (self.at(design, speed * (1 + sign * h), load) for sign in (1, -1))
+        slopes["speed"] = math.log(above.ratio / below.ratio) / (2 * h * speed)
+        above, below = (self.at(design, speed, load * (1 + sign * h)) for sign in (1, -1))
+        slopes["load"] = math.log(above.ratio / below.ratio) / (2 * h * load)
+        return slopes
 
     def worst(self, design: Mapping[str, float], speeds: int | None = None) -> list[DecayPoint]:
         """Local maxima of the decay ratio over the envelope, the largest first; no gradients.
@@ -182,12 +246,12 @@ def loads_of(study: Study) -> tuple[float, ...]:
 def _gradient(time: np.ndarray, history: np.ndarray, answer: Decay) -> np.ndarray:
     """d ln(ratio)/d ln(design) from the sensitivities at the two extrema, where the time itself has no effect."""
     d = (len(history) - 2) // 2
+    # yaw and its sensitivities, and the rates of all of these
+    values, rates = history[[0, *range(2, 2 + d)]], history[[1, *range(2 + d, 2 + 2 * d)]]
 
     def relative(moment: float) -> np.ndarray:
-        i = min(int(np.searchsorted(time, moment, "right")) - 1, time.size - 2)
-        h = time[i + 1] - time[i]
-        value, rate = history[[0, *range(2, 2 + d)]], history[[1, *range(2 + d, 2 + 2 * d)]]
-        at = hermite((moment - time[i]) / h, value[:, i], value[:, i + 1], h * rate[:, i], h * rate[:, i + 1])
-        return at[1:] / at[0]
+        i = slice(max(int(np.searchsorted(time, moment)) - 1, 0), None)
+        near = CubicHermiteSpline(time[i][:2], values[:, i][:, :2], rates[:, i][:, :2], axis=1)(moment)
+        return near[1:] / near[0]
 
     return relative(answer.last) - relative(answer.first)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .exchange import first_points
+from .exchange import best_local, first_points, solve_with_decay
+from .problem import DesignProblem
 from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program, relaxable
 from .results import Infeasibility, OperatingPoint, Relaxation
 from .scan import steady_designs
@@ -25,6 +26,9 @@ ENOUGH = 1e-6
 """Slack (logarithmic, in m, or in 1/s) that counts as none."""
 
 ROUNDS = 8
+
+HOLDS_BACK = 1e-3
+"""Multiplier above which a constraint stands in the way of a lower decay ratio (the unit being `program.EXCESS_PRICE`)."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,12 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
     Every relaxation that is reported belongs to a design whose rows and worst abscissa were evaluated, whether or not IPOPT
     converged to it: it is enough. That no smaller one exists is not proved.
     """
+    if solver.problem.study.required.decay is not None:
+        rest = NlpSolver(DesignProblem(solver.problem.study.replace(requirements__decay=None)))
+        found = diagnose(rest, starts)
+        if found.feasible_design is None:
+            return found
+        return _decay_out_of_reach(solver, [found.feasible_design, *steady_designs(solver.problem, STEADY)])
     starts = [*steady_designs(solver.problem, STEADY), *starts]
     everything = (*solver.problem.constraint_names, _STABILITY)
     least = _least(solver, starts, everything)
@@ -69,8 +79,8 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
         return Diagnosis(None, None)
     if max(least.slacks.values()) < ENOUGH:
         return Diagnosis(least.design, None)
-    found = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything}
-    alone = {name: elastic for name, elastic in found.items() if elastic is not None}
+    each = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything}
+    alone = {name: elastic for name, elastic in each.items() if elastic is not None}
     # the elastic program has local optima: one relaxation alone may turn out cheaper than what it found for all
     least = min([least, *alone.values()], key=lambda elastic: elastic.price)
     short = [name for name, slack in least.slacks.items() if slack > ENOUGH]
@@ -81,6 +91,43 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
             alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in alone.items()),
         ),
     )
+
+
+def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagnosis:
+    """Least decay ratio of all designs that meet the other requirements, and which of these would make room."""
+    problem, points = solver.problem, first_points(solver)
+    reached = [best_local(solver, start, points) for start in starts]
+    for found in reached:
+        if found.solved:
+            return Diagnosis(found.solution.design, None)
+    reached = [found for found in reached if found.decay]
+    if not reached:
+        return Diagnosis(None, None)
+    best = min(reached, key=lambda found: found.decay[0].ratio)
+    at_bounds = np.abs(best.solution.bound_multipliers[:-1]) > HOLDS_BACK
+    bounds = tuple(f"design.{v.name}" for v, at in zip(problem.variables, at_bounds, strict=False) if at)
+    required, worst = problem.study.required.decay, best.decay[0]
+    assert required is not None
+    ratio = Relaxation(
+        name="decay_ratio",
+        limit=required.ratio,
+        needed=worst.ratio,
+        unit="1",
+        inputs=("requirements.decay.ratio", "requirements.decay.cycles", *bounds),
+        speed=worst.speed,
+        load=worst.load,
+    )
+    alone = [ratio]
+    for constraint, multiplier in zip(problem.constraints, best.solution.row_multipliers, strict=True):
+        if multiplier <= HOLDS_BACK:
+            continue
+        form, name = ElasticHurwitzProgram, constraint.name
+        relaxed = solve_with_decay(solver, best.solution.design, best.solution.points, form, relaxed=(name,))
+        rows = problem.rows(relaxed.solution.design)
+        if relaxed.solved and all(row <= ENOUGH for other, row in rows.items() if other != name):
+            outcome = _outcome(solver, relaxed.solution.design, relaxed.worst[0])
+            alone.append(_relaxation(solver, outcome, name))
+    return Diagnosis(None, Infeasibility(shortfalls=(ratio,), alone_enough=tuple(alone)))
 
 
 def _least(solver: NlpSolver, starts: Sequence[Mapping[str, float]], relaxed: Sequence[str]) -> _Elastic | None:
@@ -111,7 +158,7 @@ def _elastic(
             outcomes.append(outcome)
         if not solution.converged:
             return outcomes, False
-        margin = solution.extra[len(relaxable(problem)) - 1]
+        margin = solution.extra[len(relaxable(problem)) - 1]  # after the slacks
         violating = [p for p in worst if p.abscissa > -margin - problem.study.solver.margin_reserve / 2]
         if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
             return outcomes, True

@@ -182,10 +182,14 @@ class _Run:
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
         """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""
-        self._point[2] = self._torque + self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
+        self._point[2] = self._torque
+        if self._unbalance:
+            self._point[2] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
+        if not self._z.size:
+            return self._model.motion(x, self._z, self._modes, self._point)
         for _ in range(NEWTON_STEPS):
             found = self._model.motion(x, self._z, self._modes, self._point)
-            change = np.abs(found[1]).max(initial=0.0)
+            change = np.abs(found[1]).max()
             if change < NEWTON_TOLERANCE:
                 return found
             if not np.isfinite(change):

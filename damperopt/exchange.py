@@ -8,20 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from .decay import DecayPoint
+from .problem import DesignProblem
 from .program import CUTS, Cut, FactorProgram, HurwitzProgram, Program
 from .results import OperatingPoint
+from .screening import linear_decay
 from .solve import LocalSolution, NlpSolver
 from .worst import worst_points
 
-__all__ = ["DecayHold", "EnvelopeSolution", "best_local", "first_points", "solve_envelope", "solve_with_decay"]
+__all__ = [
+    "DecayHold",
+    "EnvelopeSolution",
+    "best_local",
+    "first_points",
+    "held_again",
+    "solve_envelope",
+    "solve_with_decay",
+]
 
 MAX_ROUNDS = 30
 
-DECAY_ROUNDS = 60
+DECAY_ROUNDS = 30
 
 FIRST_RADIUS = 1.0
 """Longest first step of a scaled design variable with linearised decay: a factor of e."""
@@ -124,10 +135,40 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
     EnvelopeSolution
         That meets the decay requirement too, if there is one.
     """
-    found = _best_stable(solver, start, points)
     if solver.problem.study.required.decay is None:
-        return found
-    return solver.remembered(found.solution.design, lambda: _best_decayed(solver, found))
+        return _best_stable(solver, start, points)
+    if _decays_moderately(solver.problem, start):  # such a start may lie in a basin of its own
+        direct = solve_with_decay(solver, start, points, HurwitzProgram)
+        if direct.solved:
+            return direct
+    found = _best_stable(solver, start, points)
+    return solver.remembered(found.solution.design, lambda: _best_decayed(solver, found)) if found.solved else found
+
+
+def held_again(
+    solver: NlpSolver,
+    found: EnvelopeSolution,
+    points: Sequence[tuple[float, float]] = (),
+    decay_points: Sequence[tuple[float, float]] = (),
+) -> EnvelopeSolution:
+    """An optimum solved again with points that its exchange has missed.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    found : EnvelopeSolution
+    points, decay_points : sequence of (speed, load)
+        For stability and for decay [m/s], [N].
+
+    Returns
+    -------
+    EnvelopeSolution
+    """
+    design, points = found.solution.design, [*found.solution.points, *points]
+    if solver.problem.study.required.decay is None:
+        return best_local(solver, design, points)
+    form = FactorProgram if found.solution.form == FactorProgram.__name__ else HurwitzProgram
+    return solve_with_decay(solver, design, points, form, decay_points)
 
 
 def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
@@ -139,6 +180,14 @@ def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence
         return found
     again = solve_envelope(solver, found.solution.design, found.solution.points, HurwitzProgram)
     return again if again.solved and again.solution.objective < found.solution.objective else found
+
+
+def _decays_moderately(problem: DesignProblem, design: Mapping[str, float]) -> bool:
+    """Whether the linear gear decays, and not ten times as well as it must."""
+    required, yaw = problem.study.required.decay, problem.yaw_numbers(design)
+    assert required is not None
+    k_psi, c_psi = (np.array([yaw[name]]) for name in ("torsional_stiffness", "torsional_damping"))
+    return bool(0.1 * required.ratio < linear_decay(problem.study, k_psi, c_psi)[0] < 1)
 
 
 def _best_decayed(solver: NlpSolver, found: EnvelopeSolution) -> EnvelopeSolution:
@@ -154,25 +203,27 @@ class DecayHold:
     ----------
     solver : NlpSolver
         Of a study with a decay requirement.
+    more : sequence of (speed, load)
+        Held in any case [m/s], [N].
     """
 
-    def __init__(self, solver: NlpSolver):
+    def __init__(self, solver: NlpSolver, more: Sequence[tuple[float, float]] = ()):
         self._problem, self._analysis = solver.problem, solver.decay
-        self._held: list[tuple[float, float]] = []
+        self._always, self._held = list(more), list[tuple[float, float]]()
 
     def worst(self, design: Mapping[str, float]) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
         peaks = self._analysis.worst(design)
         for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
             self._held = [held for held in self._held if not _moved(peak, held)]
-            self._held = [*self._held, (peak.speed, peak.load)][-CUTS:]
+            self._held = [*self._held, (peak.speed, peak.load)][len(self._always) - CUTS :]
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
         """Decay at the held points, linearised about `design`."""
         x, problem = self._problem.scaled(design), self._problem
         slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:-1]])
-        found = (self._analysis.at(design, *point, gradient=True) for point in self._held)
+        found = (self._analysis.at(design, *point, gradient=True) for point in (*self._always, *self._held))
         return [Cut(p.speed, p.load, float(np.log(p.ratio)), np.append(p.gradient * slopes, 0.0), x) for p in found]
 
 
@@ -181,7 +232,12 @@ def _moved(peak: DecayPoint, held: tuple[float, float]) -> bool:
 
 
 def solve_with_decay(
-    solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]], form: type[Program]
+    solver: NlpSolver,
+    start: Mapping[str, float],
+    points: Sequence[tuple[float, float]],
+    form: type[Program],
+    decay_points: Sequence[tuple[float, float]] = (),
+    **options: Any,
 ) -> EnvelopeSolution:
     """Local optimum that meets the decay requirement at every speed, from a design that meets the rest.
 
@@ -193,22 +249,27 @@ def solve_with_decay(
     points : sequence of (speed, load)
         Where stability is imposed in the first round.
     form : type
-        `HurwitzProgram` or `FactorProgram`.
+        Program class.
+    decay_points : sequence of (speed, load)
+        Where decay is held besides the peaks that are found.
+    **options : object
+        Passed to `Program.instance`.
 
     Returns
     -------
     EnvelopeSolution
+        Where the ratio cannot be reached, not solved, with the design of least ratio and its `decay`.
     """
     study = solver.problem.study
     required = study.required.decay
     assert required is not None
     allowed = -study.required.stability_margin - study.solver.margin_reserve / 2
     least_ratio = required.ratio * (1 - study.solver.decay_reserve / 2)
-    hold, points, design, radius = DecayHold(solver), list(points), dict(start), FIRST_RADIUS
+    hold, points, design, radius = DecayHold(solver, decay_points), list(points), dict(start), FIRST_RADIUS
     decay, looked = hold.worst(design), True
     cuts = hold.cuts(design)
     for rounds in range(1, DECAY_ROUNDS + 1):
-        solution = solver.solve(design, points, form, cuts, radius=radius)
+        solution = solver.solve(design, points, form, cuts, radius=radius, **options)
         if not solution.converged:
             if radius > 8:
                 return EnvelopeSolution(solution, (), rounds, False)
@@ -217,20 +278,22 @@ def solve_with_decay(
         step = np.abs(solution.x - solver.problem.scaled(design))[:-1].max()
         design = solution.design
         worst = worst_points(solver.problem.model.at(design), study.envelope, allowed)
-        new = [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
-        points += new
+        violating = [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
+        points += violating
         looked = step < 1e-2 or rounds % 4 == 0
         if looked:
             decay = hold.worst(design)
         before, cuts = cuts, hold.cuts(design)
-        if step < STILL and looked and not new and decay[0].ratio <= least_ratio:
-            return EnvelopeSolution(solution, tuple(worst), rounds, worst[0].abscissa <= allowed, tuple(decay))
+        if step < STILL and looked and not violating:
+            met = worst[0].abscissa <= allowed and decay[0].ratio <= least_ratio
+            if met or solution.extra[0] > STILL:  # all that the ratio can be lowered to
+                return EnvelopeSolution(solution, tuple(worst), rounds, met, tuple(decay))
         at_same = {(c.speed, c.load): c for c in before}
         error = max(
             (abs(c.value - at_same[c.speed, c.load].at(c.centre)) for c in cuts if (c.speed, c.load) in at_same), default=1.0
         )
         radius = radius / 3 if error > 0.3 else min(2 * radius, FIRST_RADIUS) if error < 0.05 else radius
-    return EnvelopeSolution(solution, (), rounds, False)
+    return EnvelopeSolution(solution, (), rounds, False, tuple(decay))
 
 
 def _close(point: OperatingPoint, used: tuple[float, float]) -> bool:

@@ -64,7 +64,7 @@ class Integrator:
     dae : DAE
         With smooth elements.
     data : sequence of float
-        Numbers of the study.
+        Numbers of the study, for calls that give none.
     steps : int
         Output steps of one call.
     engine : str
@@ -100,15 +100,16 @@ class Integrator:
             ca.SX.sym(name) for name in ("duration", "time", "start", "torque", "unbalance", "wheel_rate")
         )
         external = torque + unbalance * wheel_rate**2 * ca.sin(wheel_rate * (start + duration * time))
-        parameters = ca.vertcat(model.design, model.speed, model.load, duration, start, torque, unbalance, wheel_rate)
+        self._data = np.array(data)
+        parameters = ca.vertcat(
+            model.design, model.speed, model.load, duration, start, torque, unbalance, wheel_rate, model.data
+        )
         x, z, ode, alg = _with_sensitivities(model) if self._d else (model.x, model.z, model.ode, model.alg)
         problem = {"x": x, "p": parameters, "t": time}
-        known = ca.vertcat(model.data, model.yaw_torque), ca.vertcat(ca.DM(data), external)
-        problem["ode"] = duration * ca.substitute(ode, *known)
+        problem["ode"] = duration * ca.substitute(ode, model.yaw_torque, external)
         if self._m:
-            problem |= {"z": z, "alg": ca.substitute(alg, *known)}
-            guess = ca.substitute(model.first_guess(), *known)
-            self._guess = ca.Function("guess", [model.x, parameters], [guess])
+            problem |= {"z": z, "alg": alg}
+            self._guess = ca.Function("guess", [model.x, parameters], [model.first_guess()])
         if compiled is None:
             compiled = engine == "erk" and has_compiler()
         self._size, self._algebraic = x.numel(), z.numel()
@@ -127,6 +128,7 @@ class Integrator:
         torque: float = 0.0,
         unbalance: float = 0.0,
         wheel_rate: float = 0.0,
+        data: np.ndarray | None = None,
     ) -> Solution:
         """Integrate from `x0` over `duration` [s].
 
@@ -144,6 +146,8 @@ class Integrator:
             (n, d) at the start; None: zero.
         torque, unbalance, wheel_rate : float
             Constant yaw torque [N m], unbalance moment [kg m^2] and wheel speed [rad/s].
+        data : ndarray or None
+            Numbers of the study.
 
         Returns
         -------
@@ -154,7 +158,8 @@ class Integrator:
         FloatingPointError
             If the integrator cannot go on, or the solution overflows.
         """
-        p = [*design, speed, load, duration, start, torque, unbalance, wheel_rate]
+        more = [speed, load, duration, start, torque, unbalance, wheel_rate]
+        p = np.concatenate([design, more, self._data if data is None else data])
         full = np.zeros(self._size)
         full[: self._n] = x0
         if sensitivities0 is not None:

@@ -93,8 +93,8 @@ class Program(Protocol):
     Attributes
     ----------
     nlp : dict
-        x, p, f, g for `casadi.nlpsol`. x begins with the scaled variables, g with the strength and geometry rows, p with
-        data, load limit, speeds and loads of the slots.
+        x, p, f, g for `casadi.nlpsol`. x begins with the scaled variables and, with a decay requirement, the excess of the
+        cuts; g with the strength, geometry and decay rows; p with data, load limit, speeds and loads of the slots.
     """
 
     nlp: dict[str, ca.SX]
@@ -299,7 +299,7 @@ class _ElasticProgram:
 
     The objective is the sum of the slacks: logarithmic ratios, lengths over 0.1 m, and the loss of margin over the margin
     (or 0.1 1/s if that is larger). Which of them may move is set at each instance. The variables after those of the design
-    are the slacks and the margin.
+    are the excess of the decay cuts (with a decay requirement), the slacks and the margin.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ class _ElasticProgram:
         rows = common.rows.numel()
         self._names = names
         self.nlp = {
-            "x": ca.vertcat(common.x, slack, margin, excess, stability.variables),
+            "x": ca.vertcat(common.x, excess, slack, margin, stability.variables),
             "p": ca.vertcat(common.p, stability.parameters),
             "f": ca.dot(prices, slack) + (required - margin) / max(required, 0.1) + EXCESS_PRICE * ca.sum1(excess),
             "g": ca.vertcat(
@@ -345,9 +345,9 @@ class _ElasticProgram:
         x0, lower, upper = common.box(design, radius)
         none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
         own = Instance(
-            np.concatenate([x0, start, none]),
-            np.concatenate([lower, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin], none]),
-            np.concatenate([upper, np.where(may_move[:-1], np.inf, 0.0), [self._margin], none + np.inf]),
+            np.concatenate([x0, none, start]),
+            np.concatenate([lower, none, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin]]),
+            np.concatenate([upper, none + np.inf, np.where(may_move[:-1], np.inf, 0.0), [self._margin]]),
             np.full(rows, -np.inf),
             np.zeros(rows),
             p,

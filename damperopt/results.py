@@ -16,6 +16,7 @@ __all__ = [
     "UNITS",
     "Certificate",
     "ConstraintResult",
+    "DecayCheck",
     "DesignResult",
     "Infeasibility",
     "LocalOptimum",
@@ -90,6 +91,36 @@ class Certificate:
     boxes: int = 0
 
 
+@dataclass(frozen=True)
+class DecayCheck:
+    """Decay of a design over the envelope.
+
+    Attributes
+    ----------
+    passed : bool
+        The ratio is not exceeded anywhere that was looked at.
+    limit : float
+        Required ratio.
+    cycles : int
+        Cycles that are counted.
+    speed, load, ratio : float
+        Where it is largest [m/s], [N], by the exact simulation, and how large.
+    optimised : float
+        Largest ratio by the smooth simulation that the optimiser used.
+    simulations : int
+        Exact simulations that were made.
+    """
+
+    passed: bool
+    limit: float
+    cycles: int
+    speed: float
+    load: float
+    ratio: float
+    optimised: float
+    simulations: int
+
+
 class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -108,6 +139,7 @@ class ConstraintResult(_Record):
     """
 
     name: str
+    kind: Literal["stability", "decay", "strength", "geometry", "bound"] = "geometry"
     value: float
     limit: float
     sense: Literal["<=", ">="]
@@ -202,6 +234,7 @@ class DesignResult(_Record):
 
     `status`: ``solved`` (and verified), ``infeasible`` (no design meets the requirements) or ``failed`` (the solver or the
     verification did not succeed); `message` says it in words. Design variables and derived numbers are in SI, see `UNITS`.
+    `decided_by` says what the mass hangs on: per cent of mass for one per cent of the limits of each kind of constraint.
     """
 
     schema_version: Literal[1] = 1
@@ -220,6 +253,8 @@ class DesignResult(_Record):
     not_checked: tuple[str, ...] = ()
     certificate: Certificate | None = None
     verification: Verification | None = None
+    decay: DecayCheck | None = None
+    decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
     starts: tuple[StartResult, ...] = ()

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+from .decay import DecayAnalysis
 from .problem import DesignProblem
+from .program import Cut
 from .results import Sensitivity
 from .solve import LocalSolution
-from .specs import unit_of
+from .specs import Study, unit_of
 
 __all__ = ["sensitivities"]
 
 
-def sensitivities(problem: DesignProblem, solution: LocalSolution) -> tuple[Sensitivity, ...]:
+def sensitivities(
+    problem: DesignProblem, solution: LocalSolution, analysis: DecayAnalysis | None = None
+) -> tuple[Sensitivity, ...]:
     """Derivatives of the optimal mass, the largest elasticity first.
 
     Parameters
@@ -18,6 +25,8 @@ def sensitivities(problem: DesignProblem, solution: LocalSolution) -> tuple[Sens
     problem : DesignProblem
     solution : LocalSolution
         A local optimum over the envelope.
+    analysis : DecayAnalysis or None
+        For studies with a decay requirement: the gradient of each active cut is taken from it.
 
     Returns
     -------
@@ -31,19 +40,28 @@ def sensitivities(problem: DesignProblem, solution: LocalSolution) -> tuple[Sens
     first-order effect; at an end of the range it has, and that is the sensitivity to the end.
     """
     study, points = problem.study, solution.points
+    decay: dict[str, float] = {}  # what moves the active cuts, times their multipliers
+    for cut, multiplier in zip(solution.cuts, solution.cut_multipliers, strict=True):
+        if analysis is None or multiplier <= 1e-7 * solution.objective:
+            continue
+        for name, slope in analysis.data_gradient(solution.design, cut.speed, cut.load).items():
+            for key in _inputs(study, name, cut):
+                decay[key] = decay.get(key, 0.0) + multiplier * slope
     found = [
-        (name, float(value), unit_of(study, name), float(slope))
+        (name, float(value), unit_of(study, name), float(slope) + decay.get(name, 0.0))
         for name, value, slope in zip(problem.data_names, problem.data, solution.data_gradient, strict=True)
     ]
     for end in ("min", "max"):
         speed = getattr(study.envelope.speed, end)
         slope = sum(d for d, point in zip(solution.point_gradient[:, 0], points, strict=True) if point[0] == speed)
-        found.append((f"envelope.speed.{end}", speed, "m/s", float(slope)))
-    names = ("min", "max") if study.envelope.load_is_range else range(len(study.envelope.loads))
+        name = f"envelope.speed.{end}"
+        found.append((name, speed, "m/s", float(slope) + decay.get(name, 0.0)))
+    names: Sequence[Any] = ("min", "max") if study.envelope.load_is_range else range(len(study.envelope.loads))
     for name, load in zip(names, study.envelope.loads, strict=True):
         slope = sum(d for d, point in zip(solution.point_gradient[:, 1], points, strict=True) if point[1] == load)
         slope += solution.load_limit_gradient if load == problem.load_limit else 0.0
         single = len(study.envelope.loads) == 1
+        slope += decay.get(f"load {load}", 0.0)
         found.append(("envelope.vertical_load" + ("" if single else f".{name}"), load, "N", float(slope)))
     results = [
         Sensitivity(input=name, value=value, unit=unit, derivative=slope, elasticity=slope * value / solution.objective)
@@ -51,3 +69,10 @@ def sensitivities(problem: DesignProblem, solution: LocalSolution) -> tuple[Sens
         if abs(slope) * abs(value) > 1e-7 * solution.objective or (value == 0 and slope != 0)
     ]
     return tuple(sorted(results, key=lambda s: -abs(s.elasticity)))
+
+
+def _inputs(study: Study, name: str, cut: Cut) -> list[str]:
+    """Inputs of the study that move a number of the simulation; a speed inside the range is a maximum and moves nothing."""
+    if name == "speed":
+        return [f"envelope.speed.{end}" for end in ("min", "max") if getattr(study.envelope.speed, end) == cut.speed]
+    return [f"load {cut.load}"] if name == "load" else [name]

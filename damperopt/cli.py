@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -19,16 +19,23 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from . import config, summary
+from .arguments import choices, disturbance_of, quantity, speed_grid
 from .certify import certify
 from .critical import critical_speeds
+from .decay import DecayAnalysis
 from .design import combinations, optimise_each, rank
 from .errors import ConfigError, DamperoptError, Interrupted, OutputError
+from .events import ExactSimulator
+from .integrators import ENGINES
 from .materials import MATERIALS
 from .modes import ModeTable, track_modes
-from .output import run_folder, write_modes, write_ranking, write_run
+from .output import run_folder, write_modes, write_motion, write_ranking, write_run, write_trajectory
+from .records import Force, Speed, Time
 from .results import DesignResult, load_result
+from .simulate import Simulator
 from .specs import Study
 from .stability import linear_gear
+from .trajectory import motion_of
 from .variables import DESIGN_VARIABLES, TOPOLOGIES
 from .worst import worst_points
 
@@ -98,8 +105,8 @@ def optimise(
     Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
     """
     study = config.load(file)
-    topologies = _choices(topology, TOPOLOGIES, "--topology")
-    materials = _choices(material, tuple(MATERIALS), "--material")
+    topologies = choices(topology, TOPOLOGIES, "--topology")
+    materials = choices(material, tuple(MATERIALS), "--material")
     studies = combinations(study, topologies, materials)
     folder = run_folder(output, file.stem)
 
@@ -161,7 +168,7 @@ def analyse(
             soft_wrap=True,
             markup=False,
         )
-    grid = _speed_grid(speeds, study)
+    grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
@@ -183,6 +190,57 @@ def analyse(
         _draw_modes(place, tables, margin)
 
     write_run(folder, write)
+    out.print(f"\nResults in {folder}", soft_wrap=True)
+
+
+@app.command()
+def simulate(
+    file: ConfigArgument,
+    speed: Annotated[str, typer.Option(help="Speed, such as 40 or '120 kt' [m/s].")],
+    design: Annotated[
+        Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
+    ] = None,
+    load: Annotated[str, typer.Option(help="Vertical load [N]. [default: the largest of the envelope]")] = "",
+    release: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw, bending or string let go.")] = None,
+    kick: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw or bending rate at the start.")] = None,
+    step: Annotated[list[str] | None, typer.Option(metavar="torque=VALUE", help="Yaw torque from the start.")] = None,
+    unbalance: Annotated[list[str] | None, typer.Option(metavar="moment=VALUE", help="Rotating unbalance.")] = None,
+    duration: Annotated[str, typer.Option(help="Time to simulate [s].")] = "3",
+    engine: Annotated[str, typer.Option(help=f"{', '.join(ENGINES)}, exact (corners as events), or auto.")] = "auto",
+    output: OutputOption = None,
+) -> None:
+    """Motion after a disturbance: trajectories, cycles, decay, and whether it settles, cycles or diverges.
+
+    Exit code 0 also where the motion diverges: that is an answer. 2: the question is not well posed.
+    """
+    study = config.load(file)
+    values = None
+    if design is not None:
+        study, values = _with_design(study, load_result(design), file, design)
+    given = {"release": release or [], "kick": kick or [], "step": step or [], "unbalance": unbalance or []}
+    required = study.requirements.decay if study.requirements else None
+    if any(given.values()):
+        disturbance = disturbance_of(given)
+    elif required is not None:
+        disturbance = required.disturbance
+    else:
+        disturbance = disturbance_of({"release": ["yaw=1deg"]})
+    at_speed, at_load = quantity(speed, Speed, "--speed"), quantity(load, Force, "--load") if load else None
+    seconds = quantity(duration, Time, "--duration")
+    folder = run_folder(output, f"{file.stem}-simulation")
+    run = ExactSimulator(study, values) if engine == "exact" else Simulator(study, values, engine)
+    motion = run(at_speed, at_load, disturbance, seconds)
+    found = motion_of(motion, required.cycles if required else 3)
+
+    def write(place: Path) -> None:
+        from . import plots  # matplotlib takes longer to import than a motion takes to find
+
+        write_trajectory(place / "trajectory.csv", motion)
+        write_motion(place / "motion.json", motion, found, disturbance, values or study.start)
+        plots.save(plots.trajectory(motion, found), place, "trajectory")
+
+    write_run(folder, write)
+    summary.show_motion(out, motion, found, required.cycles if required else 3)
     out.print(f"\nResults in {folder}", soft_wrap=True)
 
 
@@ -241,7 +299,24 @@ def _write_design(place: Path, study: Study, result: DesignResult, figures: bool
     shown = min(tables, key=lambda table: abs(table.load - worst.load))
     plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
     plots.save(plots.mass_by_part(result), place, "mass")
+    if result.decay is not None:
+        plots.save(_decay_figure(study, result), place, "decay")
     plots.save(plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])), place, "region")
+
+
+def _decay_figure(study: Study, result: DesignResult) -> Any:
+    from . import plots
+
+    required, check = study.required.decay, result.decay
+    assert required is not None
+    assert check is not None
+    analysis = DecayAnalysis(study)
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    speeds = np.unique(np.append(np.geomspace(low, high, 60), check.speed))
+    ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]
+    duration = 1.8 * analysis.at(result.design, check.speed, check.load).time
+    motion = Simulator(study, result.design)(check.speed, check.load, required.disturbance, duration)
+    return plots.decay(motion, check, speeds, np.array(ratios))
 
 
 def _draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
@@ -271,31 +346,6 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
         return study.replace(**changes), result.design
     except ConfigError as error:
         raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None
-
-
-def _speed_grid(text: str, study: Study) -> np.ndarray:
-    if not text:
-        low, high = study.envelope.speed.min, study.envelope.speed.max
-        return np.unique(np.linspace(low, high, 400))
-    allowed = "MIN:MAX:STEP in m/s, 0 < MIN <= MAX, STEP > 0, at most 100000 speeds, such as 5:100:1"
-    try:
-        low, high, step = (float(part) for part in text.split(":"))
-    except ValueError:
-        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}") from None
-    if not (0 < low <= high < np.inf and 0 < step < np.inf and (high - low) / step < 1e5):
-        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}")
-    count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
-    return low + step * np.arange(count)
-
-
-def _choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:
-    if text == "all":
-        return list(allowed)
-    chosen = [part.strip() for part in text.split(",") if part.strip()]
-    unknown = [part for part in chosen if part not in allowed]
-    if unknown:
-        raise ConfigError(f"{option}: '{unknown[0]}' is unknown; allowed: {', '.join(allowed)}, or all")
-    return list(dict.fromkeys(chosen))
 
 
 def _workers(studies: Sequence[Study]) -> int:

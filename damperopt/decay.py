@@ -49,13 +49,14 @@ DIVERGED = 100.0
 class DecayPoint:
     """Decay at one speed [m/s] and load [N].
 
-    `gradient` holds d ln(ratio)/d ln(design variable), empty if not asked for.
+    `gradient` holds d ln(ratio)/d ln(design variable), empty if not asked for; `time` is when the ratio is read [s].
     """
 
     speed: float
     load: float
     ratio: float
     gradient: np.ndarray
+    time: float
 
 
 def latest_count(state_matrix: np.ndarray, cycles: int) -> float:
@@ -137,7 +138,7 @@ class DecayAnalysis:
             try:
                 found = integrator(x, values, speed, load, stretch, start, S, data=data)
             except FloatingPointError:
-                return DecayPoint(speed, load, DIVERGED, nothing)
+                return DecayPoint(speed, load, DIVERGED, nothing, start)
             x, S = found.x[:, -1], found.sensitivities[:, :, -1] if gradient else None
             # yaw, its rate, and the sensitivities of both, row by row
             rows = np.vstack([found.x[:2], *(found.sensitivities[:2].reshape(-1, found.x.shape[1]))])
@@ -145,7 +146,7 @@ class DecayAnalysis:
             start += stretch
             first = np.abs(parts[0][0]).max()
             if abs(x[0]) > DIVERGED * first:
-                return DecayPoint(speed, load, DIVERGED, nothing)
+                return DecayPoint(speed, load, DIVERGED, nothing, start)
             settled = np.abs(rows[0]).max() < SETTLED * required.ratio * first and len(parts) > 1
             history = np.hstack(parts)
             time = np.linspace(0, start, history.shape[1])
@@ -153,10 +154,24 @@ class DecayAnalysis:
             if answer is None:
                 continue
             if settled or start >= answer.last + MORE_CYCLES * (answer.last - answer.first) / required.cycles:
-                return DecayPoint(speed, load, answer.ratio, _gradient(time, history, answer))
+                slopes = _gradient(time, history, answer)
+                if gradient and answer.last == latest:
+                    slopes += _rate_at(time, history, latest) * self._latest_slopes(values, speed, load, data)
+                return DecayPoint(speed, load, answer.ratio, slopes, answer.last)
         answer = decay(time, history[0], history[1], required.cycles, 0.9 * start)
-        ratio = answer.ratio if answer else 1.0
-        return DecayPoint(speed, load, ratio, _gradient(time, history, answer) if answer else nothing)
+        if answer is None:
+            return DecayPoint(speed, load, 1.0, nothing, start)
+        return DecayPoint(speed, load, answer.ratio, _gradient(time, history, answer), answer.last)
+
+    def _latest_slopes(self, values: list[float], speed: float, load: float, data: np.ndarray) -> np.ndarray:
+        """d `latest_count`/d ln(design variable) [s], by central differences."""
+
+        def latest(factors: np.ndarray) -> float:
+            A = self.model.state_matrix(ca.DM(factors * values), speed, load, data).full()
+            return latest_count(A, self.requirement.cycles)
+
+        steps = DIFFERENCE * np.eye(len(values))
+        return np.array([(latest(1 + h) - latest(1 - h)) / (2 * DIFFERENCE) for h in steps])
 
     def data_gradient(self, design: Mapping[str, float], speed: float, load: float) -> dict[str, float]:
         """d ln(ratio)/d number of the study, by central differences.
@@ -241,6 +256,12 @@ def loads_of(study: Study) -> tuple[float, ...]:
     if not envelope.load_is_range:
         return envelope.loads
     return tuple(np.linspace(envelope.loads[0], envelope.loads[1], 5).tolist())
+
+
+def _rate_at(time: np.ndarray, history: np.ndarray, moment: float) -> float:
+    """d ln|yaw|/dt [1/s]."""
+    spline = CubicHermiteSpline(time, history[0], history[1])
+    return float(spline(moment, 1) / spline(moment))
 
 
 def _gradient(time: np.ndarray, history: np.ndarray, answer: Decay) -> np.ndarray:

@@ -64,7 +64,7 @@ def build(symbols: SymbolicStudy, elements: Elements | None = None) -> DAE:
     motion = _equations(study.gear, study.tyre, elements, damper, x, speed, load, yaw_torque)
     outputs = damper.outputs | motion.outputs
     if "I_arm" in design:
-        moment = ca.fabs(outputs["spring_force"]) * link.arm_length
+        moment = outputs["spring_force"] * link.arm_length
         outputs["arm_stress"] = moment / section_modulus(study.mass.arm_section, design["I_arm"])
     return DAE(
         x=ca.vertcat(*x.values(), *damper.states.values()),

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
+from .disturbances import Disturbance
 from .errors import OutputError
 from .modes import ModeTable
 from .results import DesignResult
+from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
-__all__ = ["run_folder", "write_modes", "write_run"]
+__all__ = ["run_folder", "write_modes", "write_motion", "write_ranking", "write_run", "write_trajectory"]
 
 MODE_COLUMNS = (
     "speed_m_s",
@@ -120,3 +124,29 @@ def write_ranking(path: Path, results: Iterable[DesignResult]) -> None:
             abscissa = f"{result.stability.abscissa:.9g}" if result.stability else ""
             design = [f"{result.design[name]:.9g}" if name in result.design else "" for name in names]
             writer.writerow([rank, result.topology, result.material, result.status, mass, abscissa, *design])
+
+
+def write_trajectory(path: Path, motion: Trajectory) -> None:
+    """Trajectory as CSV: time, states and outputs in SI, one row per output time."""
+    names = ("time", *motion.states, *motion.outputs)
+    columns = (motion.time, *motion.states.values(), *motion.outputs.values())
+    header = ",".join(f"{name} [{TRAJECTORY_UNITS[name]}]" for name in names)
+    np.savetxt(path, np.column_stack(columns), fmt="%.10e", delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+def write_motion(
+    path: Path, trajectory: Trajectory, motion: Motion, disturbance: Disturbance, design: Mapping[str, float]
+) -> None:
+    """What a trajectory shows as JSON, with the question that it answers."""
+    record = {
+        "speed": trajectory.speed,
+        "load": trajectory.load,
+        "disturbance": disturbance.model_dump(exclude_none=True),
+        "design": dict(design),
+        "engine": trajectory.engine,
+        "status": trajectory.status,
+        "message": trajectory.message,
+        "duration": float(trajectory.time[-1]),
+        **asdict(motion),
+    }
+    path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")

@@ -15,9 +15,10 @@ from matplotlib.ticker import NullLocator
 
 from .modes import ModeTable
 from .region import FeasibleRegion
-from .results import UNITS, DesignResult
+from .results import UNITS, DecayCheck, DesignResult
+from .trajectory import Motion, Trajectory
 
-__all__ = ["mass_by_part", "modes_before_after", "modes_over_speed", "region", "save"]
+__all__ = ["decay", "mass_by_part", "modes_before_after", "modes_over_speed", "region", "save", "trajectory"]
 
 COLOURS = {"torsional": "#0b6e99", "lateral": "#c2571a", "string": "#6b6b6b"}
 STYLE: Any = {
@@ -212,3 +213,80 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
         axis.set_title("Feasible region, other variables at the optimum", fontsize=10)
         return axis.figure
+
+
+PANELS = (
+    ("Yaw angle [deg]", (("yaw_angle", "", 180 / np.pi),)),
+    ("Lateral [mm]", (("lateral_displacement", "gear, $l_g \\sin\\delta$", 1e3), ("string_deflection", "tyre string", 1e3))),
+    ("Damper force [kN]", (("damper_force", "", 1e-3),)),
+    ("Damper stroke [mm]", (("damper_stroke", "", 1e3),)),
+    ("Arm stress [MPa]", (("arm_stress", "", 1e-6),)),
+)
+"""Panels of a trajectory: axis label, and (name, label, factor) of each curve."""
+
+
+def trajectory(record: Trajectory, motion: Motion) -> Any:
+    """Yaw, lateral motion, damper force and stroke, and arm stress over time.
+
+    Parameters
+    ----------
+    record : Trajectory
+    motion : Motion
+        What it shows, for the title.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    panels = [(label, [c for c in curves if c[0] in {*record.states, *record.outputs}]) for label, curves in PANELS]
+    panels = [(label, curves) for label, curves in panels if curves]
+    with plt.rc_context(STYLE):
+        figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)
+        for axis, (label, curves) in zip(rows[:, 0], panels, strict=True):
+            for (name, legend, factor), colour in zip(curves, COLOURS.values(), strict=False):
+                axis.plot(record.time, factor * record[name], lw=1, color=colour, label=legend)
+            axis.set_ylabel(label)
+            axis.margins(x=0)
+            if len(curves) > 1:
+                axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, fontsize=8, borderaxespad=0)
+        rows[-1, 0].set_xlabel("Time [s]")
+        figure.align_ylabels(rows[:, 0])
+        words = motion.kind if not record.message else f"{motion.kind}: {record.message}"
+        figure.suptitle(f"{record.speed:g} m/s, {record.load / 1e3:g} kN: {words}", fontsize=10)
+        return figure
+
+
+def decay(record: Trajectory, check: DecayCheck, speeds: np.ndarray, ratios: np.ndarray) -> Any:
+    """The worst motion with the band that it must stay in, and the decay ratio over speed.
+
+    Parameters
+    ----------
+    record : Trajectory
+        At the worst speed.
+    check : DecayCheck
+    speeds, ratios : ndarray
+        (m,) [m/s] and decay ratios at the worst load.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    limit = f"{check.limit:.3g} of the first"
+    with plt.rc_context(STYLE):
+        figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+        first = np.abs(record["yaw_angle"]).max()
+        left.plot(record.time, np.degrees(record["yaw_angle"]), color=COLOURS["torsional"], lw=1.2)
+        after = record.time[-1] / 1.8
+        for sign in (1, -1):
+            left.plot([after, record.time[-1]], [sign * np.degrees(check.limit * first)] * 2, color="#333333", ls="--", lw=1)
+        left.text(record.time[-1], np.degrees(check.limit * first) * 1.15, limit, ha="right", fontsize=9, color="#333333")
+        left.set(xlabel="Time [s]", ylabel="Yaw angle [deg]")
+        left.set_title(f"Worst speed, {check.speed:.1f} m/s, {check.load / 1e3:g} kN", fontsize=10)
+        left.margins(x=0)
+        right.plot(speeds, ratios, color=COLOURS["torsional"])
+        right.axhline(check.limit, color="#333333", ls="--", lw=1)
+        right.plot(check.speed, check.ratio, "o", color=COLOURS["lateral"])
+        right.text(speeds[-1], 1.02 * check.limit, limit, ha="right", va="bottom", fontsize=9, color="#333333")
+        right.set(xlabel="Speed [m/s]", ylabel=f"Decay ratio after {check.cycles} cycles", ylim=(0, 1.25 * check.limit))
+        right.margins(x=0)
+        return figure

@@ -12,8 +12,19 @@ from rich.table import Table
 from .critical import CriticalSpeed
 from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
+from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
-__all__ = ["show_analysis", "show_design", "show_ranking"]
+__all__ = ["show_analysis", "show_design", "show_motion", "show_ranking"]
+
+SHOWN_PEAKS = (
+    "yaw_angle",
+    "lateral_displacement",
+    "string_deflection",
+    "slip_angle",
+    "damper_stroke",
+    "damper_force",
+    "arm_stress",
+)
 
 WORDS = {"solved": "[bold green]solved[/]", "infeasible": "[bold red]infeasible[/]", "failed": "[bold red]failed[/]"}
 
@@ -52,6 +63,17 @@ def show_design(console: Console, result: DesignResult) -> None:
         f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
         soft_wrap=True,
     )
+    if result.decay is not None:
+        decay = result.decay
+        verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
+        console.print(
+            f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
+            f"{decay.load / 1e3:g} kN, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}",
+            soft_wrap=True,
+        )
+    if result.decided_by:
+        kinds = ", ".join(f"{kind} {weight:.2g} %" for kind, weight in result.decided_by.items())
+        console.print(f"What decides the mass, per 1 % of the limits: {kinds}", soft_wrap=True)
     others = [f"{o.mass:.3f} kg ({o.starts})" for o in result.local_optima[1:]]
     if others:
         console.print(f"Other local optima (starts): {', '.join(others)}", soft_wrap=True)
@@ -73,6 +95,30 @@ def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
     for result in results:
         if result.status != "solved":
             console.print(f"{result.topology}, {escape(result.material)}: {escape(result.message)}", soft_wrap=True)
+
+
+def show_motion(console: Console, trajectory: Trajectory, motion: Motion, cycles: int) -> None:
+    """What a trajectory shows."""
+    console.print(
+        f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
+    )
+    if trajectory.message:
+        console.print(f"[bold red]stopped[/]: {escape(trajectory.message)}", soft_wrap=True)
+    ratio = "not completed" if motion.decay_ratio is None else f"{motion.decay_ratio:.4g} of the first amplitude"
+    console.print(f"{motion.cycles:g} cycles; after {cycles}: {ratio}")
+    if motion.frequency:
+        degrees = math.degrees(motion.amplitude)
+        console.print(
+            f"At the end: yaw +-{motion.amplitude:.4g} rad ({degrees:.3g} deg) about {motion.mean:.2g} rad, "
+            f"{motion.frequency:.4g} Hz",
+            soft_wrap=True,
+        )
+    table = _table("peak", "value", "unit")
+    for name in SHOWN_PEAKS:
+        if name in motion.peaks:
+            value, unit = motion.peaks[name], TRAJECTORY_UNITS[name]
+            table.add_row(name.replace("_", " "), *(_number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)))
+    console.print(table)
 
 
 def show_analysis(

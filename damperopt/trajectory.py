@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-__all__ = ["Decay", "Motion", "Trajectory", "crossings", "decay", "extrema", "motion_of"]
+__all__ = ["TRAJECTORY_UNITS", "Decay", "Motion", "Trajectory", "crossings", "decay", "extrema", "motion_of"]
 
 Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "growing", "diverging"]
 
@@ -18,6 +18,33 @@ STEADY = 2e-3
 
 SETTLED = 1e-2
 """Fraction of the largest amplitude below which a decaying motion counts as settled."""
+
+TRAJECTORY_UNITS = {
+    "time": "s",
+    "yaw_angle": "rad",
+    "yaw_rate": "rad/s",
+    "yaw_acceleration": "rad/s^2",
+    "bending_angle": "rad",
+    "bending_rate": "rad/s",
+    "string_deflection": "m",
+    "dashpot_stroke": "m",
+    "link_angle": "rad",
+    "damper_stroke": "m",
+    "damper_speed": "m/s",
+    "damper_force": "N",
+    "spring_deflection": "m",
+    "spring_force": "N",
+    "stop_force": "N",
+    "linkage_torque": "N m",
+    "torque_without_friction": "N m",
+    "slip_angle": "rad",
+    "side_force": "N",
+    "aligning_moment": "N m",
+    "lateral_displacement": "m",
+    "arm_stress": "Pa",
+    "unclosed": "m",
+}
+"""SI unit of every state and output; for a damper given about the yaw axis strokes are angles and forces torques."""
 
 NEWTON_STEPS = 6
 
@@ -146,9 +173,9 @@ class Decay:
     ratio : float
         Largest |value| after the cycles over the first extremum.
     first, last : float
-        Times of the two extrema [s].
+        Times of the first extremum and of the largest |value| [s].
     counted : bool
-        False where the cycles were not completed before `latest`, which then took their place.
+        False where the cycles were not completed before `latest`; `last` may then be `latest` itself.
     """
 
     ratio: float
@@ -198,15 +225,14 @@ def decay(
     zeros = zeros[zeros > turns[0]]
     counted = zeros.size >= 2 * cycles and zeros[2 * cycles - 1] <= latest
     start = zeros[2 * cycles - 1] if counted else latest
-    after = turns > start
-    if counted and after.any():
-        peak = np.abs(heights[after]).argmax()
-        return Decay(float(abs(heights[after][peak] / heights[0])), float(turns[0]), float(turns[after][peak]), True)
+    times, candidates = turns[turns > start], heights[turns > start]
     if not counted and time[-1] >= latest:
-        later = np.flatnonzero(time >= latest)
-        peak = later[np.abs(value[later]).argmax()]
-        return Decay(float(abs(value[peak] / heights[0])), float(turns[0]), float(time[peak]), False)
-    return None
+        times = np.append(times, latest)
+        candidates = np.append(candidates, CubicHermiteSpline(time, value, rate)(latest))
+    if not times.size:
+        return None
+    peak = np.abs(candidates).argmax()
+    return Decay(float(abs(candidates[peak] / heights[0])), float(turns[0]), float(times[peak]), bool(counted))
 
 
 def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:

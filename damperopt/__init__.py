@@ -1,7 +1,7 @@
 """Lightest shimmy damper for a landing gear, proved stable at every speed of its envelope.
 
 >>> import damperopt
->>> study = damperopt.load("configs/main_gear.yaml")
+>>> study = damperopt.load("configs/minimal.yaml")
 >>> result = damperopt.optimise(study)
 >>> result.status
 'solved'

@@ -131,12 +131,12 @@ def _stop_force(stop: Any, elements: Elements, stroke: Any) -> Any:
 def _force(orifice: Any, c: Any, elements: Elements, v: Any) -> Any:
     if orifice is None:
         return c * v
-    return c * v + orifice.coefficient * v * elements.absolute("orifice", v, orifice.smoothing)
+    return c * v + orifice.coefficient * v * elements.magnitude(v, orifice.smoothing)
 
 
 def _speed(orifice: Any, c: Any, elements: Elements, F: Any) -> Any:
     """Inverse of the damper law: the positive root of c_2 v^2 + c v = |F|, in the form that also holds for c_2 = 0."""
     if orifice is None:
         return F / c
-    magnitude = elements.absolute("orifice", F, c * orifice.smoothing)
+    magnitude = elements.magnitude(F, c * orifice.smoothing)
     return 2 * F / (c + ca.sqrt(c**2 + 4 * orifice.coefficient * magnitude))

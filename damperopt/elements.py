@@ -1,7 +1,8 @@
 """Corners of the nonlinear elements: freeplay, stops and dry friction, linear, smooth or switched.
 
 All of them are made of |x| and its slope: a dead band of half-width g is x + (|x - g| - |x + g|)/2, an end stop the same
-band in front of a stiff spring, dry friction the slope of |x|, an orifice v |v|. So one choice of |x| decides the version:
+band in front of a stiff spring, dry friction the slope of |x|. So one choice of |x| decides the version (an orifice, v |v|,
+has no corner):
 
 * `Linear` for small motion about rest with the joints in contact: no gap, no stop, no friction.
 * `Smooth` for derivatives: |x| = sqrt(x^2 + w^2), with the width w in the configuration.
@@ -21,8 +22,8 @@ __all__ = ["Elements", "Linear", "Smooth", "Switch", "Switched"]
 class Elements(Protocol):
     """How |x| is written."""
 
-    def absolute(self, name: str, x: Any, width: Any) -> Any:
-        """|x| of a damper speed or force."""
+    def magnitude(self, x: Any, width: Any) -> Any:
+        """|x| where it is multiplied by x: no corner."""
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
         """Slope of |x|."""
@@ -40,7 +41,7 @@ class Elements(Protocol):
 class Linear:
     """Small motion about rest, joints in contact."""
 
-    def absolute(self, name: str, x: Any, width: Any) -> Any:
+    def magnitude(self, x: Any, width: Any) -> Any:
         return 0
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
@@ -77,6 +78,9 @@ class _Cornered:
 class Smooth(_Cornered):
     """|x| = sqrt(x^2 + w^2)."""
 
+    def magnitude(self, x: Any, width: Any) -> Any:
+        return self.absolute("", x, width)
+
     def absolute(self, name: str, x: Any, width: Any) -> Any:
         return ca.sqrt(x**2 + width**2)
 
@@ -101,6 +105,9 @@ class Switched(_Cornered):
     """|x| = m x with a mode m for each corner, collected in `switches`."""
 
     switches: dict[str, Switch] = field(default_factory=dict)
+
+    def magnitude(self, x: Any, width: Any) -> Any:
+        return ca.fabs(x)
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
         if name not in self.switches:

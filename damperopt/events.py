@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from .disturbances import Disturbance
 from .dynamics import build
 from .elements import Switched
-from .simulate import posed, valid_part
+from .simulate import posed, refuse_start, valid_part
 from .specs import Study
 from .stability import linear_gear
 from .symbols import data_values, symbolic
@@ -128,6 +128,7 @@ class ExactSimulator:
         rows, message = _Run(self, speed, load, disturbance, tolerance).rows_at(time)
         values = np.vstack([np.array(rows).T, np.zeros(len(rows))])
         names = (*self.names, "unclosed")  # the unknowns solve the equations, or the run stops
+        refuse_start(values[:, :1], names, self.study)
         kept, beyond = valid_part(values, names, self.study)
         values, message = values[:, :kept], beyond or message
         time = time[: values.shape[1]]
@@ -210,6 +211,7 @@ class _Run:
         rows: list[np.ndarray] = []
         try:
             self._settle(t, x, range(len(self._modes)))
+            rows.append(self._row(t, x))
             for _ in range(MAX_EVENTS):
                 leg = solve_ivp(
                     self._rate,
@@ -227,16 +229,18 @@ class _Run:
                 for moment in time[len(rows) :]:
                     if moment > last or (moment == last and leg.status == 1):
                         break
-                    state = leg.sol(moment)
-                    self._evaluated(moment, state)
-                    rows.append(self._model.rows(state, self._z, self._modes, self._point)[0].copy())
+                    rows.append(self._row(moment, leg.sol(moment)))
                 if leg.status != 1:
                     return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
                 t, x = last, leg.y[:, -1].copy()
                 self._cross(t, x, [i for i, times in enumerate(leg.t_events) if times.size])
         except _CannotClose:
-            return rows, "the linkage cannot close"
+            return rows, "the equations of the closed linkage are not solved"
         return rows, f"more than {MAX_EVENTS} events"
+
+    def _row(self, t: float, x: np.ndarray) -> np.ndarray:
+        self._evaluated(t, x)
+        return self._model.rows(x, self._z, self._modes, self._point)[0].copy()
 
     def _events(self) -> list[Callable[[float, np.ndarray], float]]:
         """Functions that fall through zero when a corner is passed, friction last."""
@@ -260,9 +264,15 @@ class _Run:
         for i in passed:
             if i < self._model.corners:
                 self._modes[i] *= -1
-        if self._model.corners in passed and not self._sticks:
+        others = [i for i in range(self._model.corners) if i not in passed]
+        if self._model.corners in passed and self._sticks:
+            self._settle(t, x, others)
+            torque = float(self._evaluated(t, x)[3][0])
+            self._sticks, self._modes[-1] = False, np.sign(torque)
+            return
+        if self._model.corners in passed:
             x[1] = 0.0
-        self._settle(t, x, [i for i in range(len(self._modes)) if i not in passed or i == self._model.corners])
+        self._settle(t, x, [*others, self._model.corners])
 
     def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
         """Modes that go with a state; a corner that is met exactly is judged by where the motion goes."""
@@ -273,9 +283,11 @@ class _Run:
                 if i < self._model.corners:
                     side = arguments[i] if arguments[i] else ahead[i]
                     self._modes[i] = np.sign(side) if side else self._modes[i]
-        if self._model.friction_torque and x[1] == 0.0:
+        if not self._model.friction_torque or self._model.corners not in which:
+            return
+        if x[1] == 0.0:
             torque = float(self._evaluated(t, x)[3][0])
             self._sticks = abs(torque) <= self._model.friction_torque
             self._modes[-1] = 0.0 if self._sticks else np.sign(torque)
-        elif self._model.friction_torque:
+        else:
             self._sticks, self._modes[-1] = False, np.sign(x[1])

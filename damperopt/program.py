@@ -138,7 +138,7 @@ class _Slots:
         ]
 
     def numbers(
-        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut], margin: float | None = None
+        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), margin: float | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Common parameters; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem

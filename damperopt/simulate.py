@@ -21,7 +21,7 @@ from .stability import linear_gear
 from .symbols import data_values, symbolic
 from .trajectory import Trajectory
 
-__all__ = ["Outputs", "Simulator", "posed", "simulate", "valid_part"]
+__all__ = ["Outputs", "Simulator", "posed", "refuse_start", "simulate", "valid_part"]
 
 STEPS = 256
 """Output steps of one stretch; validity is checked after each stretch."""
@@ -35,7 +35,7 @@ YAW_RANGE = 1.0
 """Yaw angle [rad] up to which linkage and tyre laws are trusted."""
 
 UNCLOSED = 1e-9
-"""Residual of the closed linkage [m^2, m] above which it cannot close."""
+"""Residual of the closed linkage [m^2, m] above which it counts as not closed."""
 
 
 def simulate(
@@ -130,33 +130,30 @@ class Simulator:
             raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")
         stretch, rate = duration / stretches, speed / self.study.gear.wheel_radius
         torque, unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
-        time = np.linspace(0, duration, stretches * STEPS + 1)
         x = np.array(disturbance.start(self._state_names))[:, None]
-        columns = [self._outputs(x, speed, load, torque)]
-        _, beyond = valid_part(columns[0], self._outputs.names, self.study)
-        if beyond:
-            raise ConfigError(f"disturbance: {beyond} at the start; allowed: a smaller one")
-        message = ""
-        for i in range(stretches):
-            part = time[i * STEPS : (i + 1) * STEPS + 1]
+        columns, times = [self._outputs(x, speed, load, torque)], [np.zeros(1)]
+        refuse_start(columns[0], self._outputs.names, self.study)
+        message, t, length = "", 0.0, stretch
+        while not message and duration - t > 1e-9 * duration:
+            length = min(length, duration - t)
             try:
-                x = self._integrator(x[:, -1], self._design, speed, load, stretch, part[0], None, torque, unbalance, rate).x
+                states = self._integrator(x[:, -1], self._design, speed, load, length, t, None, torque, unbalance, rate).x
             except FloatingPointError as error:
-                message = str(error)
-                break
-            external = torque + unbalance * rate**2 * np.sin(rate * part)
-            values = self._outputs(x, speed, load, external)
+                length /= 4  # up to where it fails
+                message = str(error) if length < stretch / STEPS else ""
+                continue
+            time = t + np.linspace(0, length, STEPS + 1)
+            values = self._outputs(states, speed, load, torque + unbalance * rate**2 * np.sin(rate * time))
             kept, message = valid_part(values, self._outputs.names, self.study)
             columns.append(values[:, 1:kept])
-            if message:
-                break
-        values = np.hstack(columns)
-        time = time[: values.shape[1]]
+            times.append(time[1:kept])
+            x, t = states, time[-1]
+        values, time = np.hstack(columns), np.concatenate(times)
         named = dict(zip(self._outputs.names, values, strict=True))
-        states = {name: named.pop(name) for name in self._state_names}
+        kept_states = {name: named.pop(name) for name in self._state_names}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
-        return Trajectory(speed, load, time, states, named, "stopped" if message else "completed", message, self.engine)
+        return Trajectory(speed, load, time, kept_states, named, "stopped" if message else "completed", message, self.engine)
 
     def _step(self, speed: float, load: float) -> float:
         """Output step [s]: a fraction of a cycle of the fastest mode."""
@@ -196,6 +193,13 @@ class Outputs:
         return self._function(states, ca.repmat(design, 1, m), speed, load, ca.repmat(data, 1, m), torque).full()
 
 
+def refuse_start(values: np.ndarray, names: Sequence[str], study: Study) -> None:
+    """`ConfigError` if the start, one column of `values` by `names`, lies beyond the validity of the model."""
+    _, beyond = valid_part(values, names, study)
+    if beyond:
+        raise ConfigError(f"disturbance: {beyond} at the start; allowed: a smaller one")
+
+
 def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[int, str]:
     """How many of the columns lie within the validity of the model, and what is left first.
 
@@ -214,7 +218,7 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
     slip_range = study.tyre.slip_range
     limits = [
         ("yaw_angle", YAW_RANGE, f"the yaw angle exceeds {YAW_RANGE:g} rad"),
-        ("unclosed", UNCLOSED, "the linkage cannot close"),
+        ("unclosed", UNCLOSED, "the equations of the closed linkage are not solved"),
         ("slip_angle", slip_range, f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"),
     ]
     stop = study.damper.end_stop

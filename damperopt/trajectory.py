@@ -213,7 +213,7 @@ def decay(
     >>> s = -0.5 + 2j * np.pi
     >>> z = np.exp(s * t) * (1 - 0.5j / np.pi / 2)  # released at rest
     >>> found = decay(t, z.real, (s * z).real, cycles=3)
-    >>> round(found.ratio, 6) == round(np.exp(-1.5), 6)
+    >>> round(found.ratio, 6) == round(float(np.exp(-1.5)), 6)
     True
     """
     zeros = crossings(time, value, rate)
@@ -260,8 +260,9 @@ def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
     amplitudes, middles = np.abs(np.diff(values)) / 2, (values[1:] + values[:-1]) / 2
     done = max(counted.size - 1, 0) / 2
     if amplitudes.size < 6:
-        last = float(np.abs(psi[-max(len(psi) // 10, 2) :]).max())
-        ends: Kind = "diverging" if trajectory.status == "stopped" else _kind_of_ends(last, float(np.abs(psi).max()))
+        end = psi[-max(len(psi) // 10, 2) :]
+        last = float(np.abs(end).max())
+        ends: Kind = "diverging" if trajectory.status == "stopped" else _kind_of_ends(end, float(np.abs(psi).max()))
         return Motion(ends, done, ratio, last, 0.0, 0.0, peaks)
     recent = slice(-max(6, min(20, amplitudes.size // 3)), None)
     per_cycle = 2 * np.polyfit(np.arange(amplitudes[recent].size), np.log(amplitudes[recent] + 1e-300), 1)[0]
@@ -281,8 +282,8 @@ def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
     return Motion(kind, done, ratio, amplitude, float(frequency), float(middles[-1]), peaks)
 
 
-def _kind_of_ends(last: float, largest: float) -> Kind:
-    """Kind of a motion with too few cycles to judge by its extrema."""
-    if last < SETTLED * largest:
+def _kind_of_ends(end: np.ndarray, largest: float) -> Kind:
+    """Kind of a motion with too few cycles to judge by its extrema, from its last tenth."""
+    if np.ptp(end) < SETTLED * largest:  # at rest, be it away from zero
         return "settled"
-    return "growing" if last == largest else "decaying"
+    return "growing" if np.abs(end).max() == largest else "decaying"

@@ -109,7 +109,7 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
     grid = [(float(V), load) for load in loads_of(study) for V in speeds] + list(points)
     found = {point: ratio(*point) for point in grid}
     (speed, load), largest = max(found.items(), key=lambda item: item[1])
-    if required.speeds is None and low < high:
+    if required.speeds is None and low < high and largest < math.inf:
         around = [V for V, _ in found if speed != V]
         bounds = max([low, *(V for V in around if speed > V)]), min([high, *(V for V in around if speed < V)])
         best = minimize_scalar(

@@ -38,3 +38,58 @@ def printed(text: str, beyond: float = 0.0):
     `beyond` is what the rounding of an input that the source prints as well can move the number by.
     """
     return pytest.approx(float(text), rel=0, abs=half_last_digit(text) * (1 + 1e-9) + beyond)
+
+
+SAME_LINKAGE = 1e-13
+"""[m]; a closed loop of links of 0.6 m, solved to rounding by two sets of unknowns (measured: below 1e-15)."""
+
+CONVERGENCE_ORDER = 0.05
+"""Of an exponent from values at two arguments, where the next power of a small argument is still to be seen."""
+
+ENERGY = 1e-9
+"""Relative; energy of an undamped motion over some five cycles at an integrator tolerance of 1e-11, IDAS at 1e-10
+(measured: 3e-10, IDAS)."""
+
+SAME_MOTION = 1e-9
+"""Of the amplitude; two integrators at a tolerance of 1e-11 over some cycles (measured: 2e-10, IDAS at 1e-10)."""
+
+STATIC_STIFFNESS = 1e-9
+"""Relative; a limit of vanishing (1e-6 N s/m) or very large (1e12) damping in place of none or a rigid one."""
+
+DYNAMIC_STIFFNESS = 1e-11
+"""Relative; receptance by one solution of the linear model, less the inertia of the gear (measured: below 1e-12)."""
+
+SENSITIVITY = 2e-8
+"""Of the largest value; sensitivities at a tolerance of 1e-10 against fourth-order differences of solutions at 1e-11
+(measured: 4e-9)."""
+
+LINEAR_RESPONSE = 1e-6
+"""Relative; steady response to a disturbance so small that squares and cubes of the motion do not count."""
+
+INTERPOLATED_DECAY = 1e-6
+"""Relative; heights of extrema from a cubic through 160 samples a cycle."""
+
+EVENT_MOTION = 1e-9
+"""Of the amplitude; exact simulation at its tolerance of 1e-10 against closed forms over some cycles and corners."""
+
+CONVERGED = 5e-4
+"""Of the amplitude; smooth version against the exact one, corners rounded over a thousandth of their element
+(measured: 1.2e-4, gap)."""
+
+FIRST_ORDER = 0.15
+"""What a tenth of the width leaves of the error: a tenth, if it goes with the width, and some of the next order."""
+
+INTEGRATED = 1e-6
+"""Of the amplitude; smooth engine at 1e-9, which takes corners in its stride, and a cubic through points of the exact one."""
+
+DESCRIBED_AMPLITUDE = 0.05
+"""Relative; describing function of a gap against the true limit cycle (measured: 3.9 % smaller)."""
+
+DESCRIBED_FREQUENCY = 0.02
+"""Relative; the same of the frequency (measured: 1.4 % slower)."""
+
+SAME_CYCLE = 1e-3
+"""Relative; limit cycle with corners rounded over a thousandth of the gap against the exact one."""
+
+GAP_PROPORTION = 2e-3
+"""Relative; cubes of yaw angles up to 4 mrad and of the slip, to which a limit cycle near neutral stability is sensitive."""

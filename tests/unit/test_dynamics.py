@@ -113,11 +113,11 @@ def random():
 def package(study):
     """x' of the package as a function of (x, V, F_z), with the numbers of `study` and DESIGN."""
     dae = dynamics.build(symbolic(study), Smooth())
-    function = ca.Function("ode", [dae.x, dae.design, dae.speed, dae.load, dae.data], [dae.ode])
+    function = ca.Function("ode", [dae.x, dae.design, dae.speed, dae.load, dae.data, dae.yaw_torque], [dae.ode])
     design = [DESIGN[name] for name in dae.design_names]
 
     def ode(x, V=40.0, F_z=150e3):
-        return function(x, design, V, F_z, data_values(study)).full().ravel()
+        return function(x, design, V, F_z, data_values(study), 0.0).full().ravel()
 
     return ode
 

@@ -22,7 +22,7 @@ from . import config, summary
 from .arguments import choices, disturbance_of, quantity, speed_grid
 from .certify import certify
 from .critical import critical_speeds
-from .decay import DecayAnalysis
+from .decay import decay_analysis
 from .design import combinations, optimise_each, rank
 from .errors import ConfigError, DamperoptError, Interrupted, OutputError
 from .events import ExactSimulator
@@ -42,9 +42,6 @@ from .worst import worst_points
 __all__ = ["app", "main"]
 
 FEW_STARTS = 24
-
-DECAY_STARTS = 8
-"""Starts without a decay requirement that take as long as one with it."""
 
 app = typer.Typer(
     name="damperopt",
@@ -310,12 +307,12 @@ def _decay_figure(study: Study, result: DesignResult) -> Any:
     required, check = study.required.decay, result.decay
     assert required is not None
     assert check is not None
-    analysis = DecayAnalysis(study)
+    analysis = decay_analysis(study)
     low, high = study.envelope.speed.min, study.envelope.speed.max
-    speeds = np.unique(np.append(np.geomspace(low, high, 60), check.speed))
+    speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
     ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]
     duration = 1.8 * analysis.at(result.design, check.speed, check.load).time
-    motion = Simulator(study, result.design)(check.speed, check.load, required.disturbance, duration)
+    motion = Simulator(study, result.design, "cvodes")(check.speed, check.load, required.disturbance, duration)
     return plots.decay(motion, check, speeds, np.array(ratios))
 
 
@@ -350,8 +347,7 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
 
 def _workers(studies: Sequence[Study]) -> int:
     """One process per core, or one alone for few starts: new processes take as long to start as 20 starts to solve."""
-    decays = studies[0].requirements is not None and studies[0].requirements.decay is not None
-    if sum(study.solver.starts for study in studies) * (DECAY_STARTS if decays else 1) <= FEW_STARTS:
+    if sum(study.solver.starts for study in studies) <= FEW_STARTS:
         return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -21,7 +21,7 @@ from .stability import LinearModel
 from .symbols import data_values, symbolic
 from .trajectory import Decay, decay
 
-__all__ = ["DecayAnalysis", "DecayPoint", "latest_count", "loads_of"]
+__all__ = ["DecayAnalysis", "DecayPoint", "decay_analysis", "latest_count", "loads_of"]
 
 PER_CYCLE = 64
 """Output points in a cycle of the fastest mode: the cubic between them is good to 2e-7 of the amplitude."""
@@ -205,30 +205,31 @@ class DecayAnalysis:
         slopes["load"] = math.log(above.ratio / below.ratio) / (2 * h * load)
         return slopes
 
-    def worst(self, design: Mapping[str, float], speeds: int | None = None) -> list[DecayPoint]:
+    def worst(self, design: Mapping[str, float], refined: bool = True) -> list[DecayPoint]:
         """Local maxima of the decay ratio over the envelope, the largest first; no gradients.
 
         Parameters
         ----------
         design : mapping
             Design variables by name [SI].
-        speeds : int or None
-            Speeds of the first look at each load; None: `solver.decay_speeds`.
+        refined : bool
+            Search between the speeds of the first look, `solver.decay_speeds` at each load, from each peak.
 
         Returns
         -------
         list of DecayPoint
-            At the required speeds if there are such; else refined between the speeds of the first look, which is no proof.
+            At the required speeds if there are such; else over the envelope, which is no proof.
         """
         points = []
         for load in loads_of(self.study):
             if self.requirement.speeds is not None:
                 points += [self.at(design, speed, load) for speed in self.requirement.speeds]
             else:
-                points += self._peaks(design, load, speeds or self.study.solver.decay_speeds)
+                points += self._peaks(design, load, refined)
         return sorted(points, key=lambda point: -point.ratio)
 
-    def _peaks(self, design: Mapping[str, float], load: float, count: int) -> list[DecayPoint]:
+    def _peaks(self, design: Mapping[str, float], load: float, refined: bool) -> list[DecayPoint]:
+        count = self.study.solver.decay_speeds
         low, high = self.study.envelope.speed.min, self.study.envelope.speed.max
         if low == high:
             return [self.at(design, low, load)]
@@ -240,6 +241,9 @@ class DecayAnalysis:
             left, right = max(i - 1, 0), min(i + 1, count - 1)
             if heights[i] < max(heights[left], heights[right]):
                 continue
+            if not refined:
+                found.append(point)
+                continue
             best = minimize_scalar(
                 lambda speed: -self.at(design, float(speed), load).ratio,
                 bounds=(speeds[left], speeds[right]),
@@ -248,6 +252,16 @@ class DecayAnalysis:
             )
             found.append(max(point, self.at(design, float(best.x), load), key=lambda p: p.ratio))
         return found
+
+
+def decay_analysis(study: Study) -> DecayAnalysis:
+    """The analysis of a study, kept with its compiled integrators: the same study is met several times on its way."""
+    return _kept(study.model_dump_json())
+
+
+@lru_cache(maxsize=8)
+def _kept(study_json: str) -> DecayAnalysis:
+    return DecayAnalysis(Study.model_validate_json(study_json))
 
 
 def loads_of(study: Study) -> tuple[float, ...]:

@@ -36,6 +36,9 @@ NEWTON_STEPS = 50
 STEPS_PER_CYCLE = 40
 """Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
 
+STEPS_WITHOUT_JOINTS = 12
+"""The same where the only corner is that of the slip limit, at which the moment of the tyre has no jump."""
+
 
 def simulate_exactly(
     study: Study,
@@ -97,6 +100,7 @@ class ExactSimulator:
         dae = build(symbolic(study), corners)
         friction = corners.switches.pop("friction", None)
         self.corners, self.friction_torque = len(corners.switches), study.gear.friction.torque if study.gear.friction else 0.0
+        self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
         modes = [switch.mode for switch in corners.switches.values()]
         modes += [friction.mode] if friction else [ca.SX.sym("no friction")]
         step = ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ dae.alg if dae.z.numel() else dae.z
@@ -179,7 +183,8 @@ class _Run:
         self._sticks = False
         self._z = model.first_guess(self._x0, np.zeros(model.motion._in[1].size), self._modes, self._point)[0].copy()
         fastest = np.abs(np.linalg.eigvals(model.gear.matrices(speed, load)[0]).imag).max()
-        self._max_step = 2 * math.pi / max(fastest, 20.0) / STEPS_PER_CYCLE
+        steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
+        self._max_step = 2 * math.pi / max(fastest, 20.0) / steps
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
         """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""

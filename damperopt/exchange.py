@@ -40,6 +40,9 @@ FIRST_RADIUS = 1.0
 STILL = 1e-6
 """Step of the scaled variables that is nothing: a linearised decay ratio is then exact to its square."""
 
+REFINED = 1e-2
+"""Step of the scaled variables below which the worst speeds are looked for in earnest."""
+
 SAME_SPEED = 0.05
 """Two worst speeds closer than this part of the larger are one that has moved."""
 
@@ -211,9 +214,9 @@ class DecayHold:
         self._problem, self._analysis = solver.problem, solver.decay
         self._always, self._held = list(more), list[tuple[float, float]]()
 
-    def worst(self, design: Mapping[str, float]) -> list[DecayPoint]:
+    def worst(self, design: Mapping[str, float], refined: bool) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
-        peaks = self._analysis.worst(design)
+        peaks = self._analysis.worst(design, refined)
         for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
             self._held = [held for held in self._held if not _moved(peak, held)]
             self._held = [*self._held, (peak.speed, peak.load)][len(self._always) - CUTS :]
@@ -266,7 +269,7 @@ def solve_with_decay(
     allowed = -study.required.stability_margin - study.solver.margin_reserve / 2
     least_ratio = required.ratio * (1 - study.solver.decay_reserve / 2)
     hold, points, design, radius = DecayHold(solver, decay_points), list(points), dict(start), FIRST_RADIUS
-    decay, looked = hold.worst(design), True
+    decay, looked = hold.worst(design, refined=False), True
     cuts = hold.cuts(design)
     for rounds in range(1, DECAY_ROUNDS + 1):
         solution = solver.solve(design, points, form, cuts, radius=radius, **options)
@@ -280,9 +283,9 @@ def solve_with_decay(
         worst = worst_points(solver.problem.model.at(design), study.envelope, allowed)
         violating = [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
         points += violating
-        looked = step < 1e-2 or rounds % 4 == 0
+        looked = step < REFINED or rounds % 4 == 0
         if looked:
-            decay = hold.worst(design)
+            decay = hold.worst(design, refined=step < REFINED)
         before, cuts = cuts, hold.cuts(design)
         if step < STILL and looked and not violating:
             met = worst[0].abscissa <= allowed and decay[0].ratio <= least_ratio

@@ -17,6 +17,7 @@ from .stability import linear_gear, spectral_abscissa
 __all__ = ["least_conditions", "linear_decay", "worst_abscissae"]
 
 SPEEDS = 24
+DECAY_SPEEDS, PER_CYCLE = 5, 14  # a look at decay, to choose starts
 STIFFNESS, DAMPING = 1e5, 1e3  # of the second and third matrix; any numbers of the right size
 
 
@@ -91,10 +92,10 @@ def linear_decay(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.ndarr
     """
     required = study.required.decay
     assert required is not None
-    V, F_z = _points(study, SPEEDS // 3)
+    V, F_z = _points(study, DECAY_SPEEDS)
     base, per_k, per_c = _affine_matrices(study, V, F_z)
     x0 = np.array(required.disturbance.start(linear_gear(study.replace(damper=_damper(0.0, 0.0))).state_names))
-    cycles = np.linspace(0, required.cycles + 1.5, int(24 * (required.cycles + 1.5)))
+    cycles = np.linspace(0, required.cycles + 1.5, int(PER_CYCLE * (required.cycles + 1.5)))
     worst = np.zeros(k_psi.size)
     for j in range(V.size):
         A = base[j] + np.multiply.outer(k_psi / STIFFNESS, per_k[j] - base[j])
@@ -107,7 +108,7 @@ def linear_decay(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.ndarr
         psi = np.einsum("mi,mit->mt", parts, np.exp(np.minimum(exponent.real, 50.0) + 1j * exponent.imag)).real
         passed = np.cumsum(psi[:, 1:] * psi[:, :-1] < 0, axis=1) >= 2 * required.cycles
         later = np.abs(np.where(passed | (cycles[1:] > 2 * required.cycles), psi[:, 1:], 0.0)).max(axis=1)
-        worst = np.maximum(worst, later / np.abs(psi[:, : 24 * 2]).max(axis=1))
+        worst = np.maximum(worst, later / np.abs(psi[:, : 2 * PER_CYCLE]).max(axis=1))
     return worst
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
-from .decay import DecayAnalysis
+from .decay import DecayAnalysis, decay_analysis
 from .problem import DesignProblem
 from .program import Cut, HurwitzProgram, Instance, Program
 
@@ -104,7 +104,7 @@ class NlpSolver:
     @cached_property
     def decay(self) -> DecayAnalysis:
         """Simulations of the study's gear, for studies with a decay requirement."""
-        return DecayAnalysis(self.problem.study)
+        return decay_analysis(self.problem.study)
 
     def remembered(self, design: Mapping[str, float], work: Callable[[], T]) -> T:
         """What `work` returns; not done again for a design that it was done for, to four digits."""

@@ -1,7 +1,7 @@
 """A continuous envelope with few points: solve, find the worst speed and load, add it, repeat until none violates.
 
 Stability first, as it asks for no simulation; then decay, from the design found: simulate it at its worst speeds, let the
-program meet the linearised decay within a step, simulate again, until the step is nothing.
+program meet a quadratic model of the decay within a step, simulate again, until the step is nothing.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ MAX_ROUNDS = 30
 DECAY_ROUNDS = 30
 
 FIRST_RADIUS = 1.0
-"""Longest first step of a scaled design variable with linearised decay: a factor of e."""
+"""Longest first step of a scaled design variable with modelled decay: a factor of e."""
 
 STILL = 1e-6
-"""Step of the scaled variables that is nothing: a linearised decay ratio is then exact to its square."""
+"""Step of the scaled variables that is nothing: the model of the decay ratio is then exact to its square."""
 
 REFINED = 1e-2
 """Step of the scaled variables below which the worst speeds are looked for in earnest."""
@@ -213,25 +213,45 @@ class DecayHold:
     def __init__(self, solver: NlpSolver, more: Sequence[tuple[float, float]] = ()):
         self._problem, self._analysis = solver.problem, solver.decay
         self._always, self._held = list(more), list[tuple[float, float]]()
+        self._last: list[Cut] = []
 
     def worst(self, design: Mapping[str, float], refined: bool) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
         peaks = self._analysis.worst(design, refined)
         for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
-            self._held = [held for held in self._held if not _moved(peak, held)]
+            self._held = [held for held in self._held if not _moved((peak.speed, peak.load), held)]
             self._held = [*self._held, (peak.speed, peak.load)][len(self._always) - CUTS :]
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
-        """Decay at the held points, linearised about `design`."""
-        x, problem = self._problem.scaled(design), self._problem
+        """Decay at the held points about `design`; curvature by symmetric rank-one updates from round to round."""
+        problem = self._problem
+        x = problem.scaled(design)[:-1]
         slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:-1]])
-        found = (self._analysis.at(design, *point, gradient=True) for point in (*self._always, *self._held))
-        return [Cut(p.speed, p.load, float(np.log(p.ratio)), np.append(p.gradient * slopes, 0.0), x) for p in found]
+        found = []
+        for speed, load in (*self._always, *self._held):
+            point = self._analysis.at(design, speed, load, gradient=True)
+            gradient = point.gradient * slopes
+            curvature = self._curvature(speed, load, x, gradient)
+            found.append(Cut(speed, load, float(np.log(point.ratio)), gradient, x, curvature))
+        self._last = found
+        return found
+
+    def _curvature(self, speed: float, load: float, x: np.ndarray, gradient: np.ndarray) -> np.ndarray:
+        """Second derivatives after an update with the last cut at this point, or at the speed that has moved here."""
+        last = next((cut for cut in self._last if _moved((speed, load), (cut.speed, cut.load))), None)
+        if last is None:
+            return np.zeros((x.size, x.size))
+        step = x - last.centre
+        surprise = gradient - last.gradient - last.curvature @ step
+        along = surprise @ step
+        if abs(along) <= 1e-8 * np.linalg.norm(surprise) * np.linalg.norm(step):
+            return last.curvature
+        return last.curvature + np.outer(surprise, surprise) / along
 
 
-def _moved(peak: DecayPoint, held: tuple[float, float]) -> bool:
-    return peak.load == held[1] and abs(peak.speed - held[0]) <= SAME_SPEED * max(peak.speed, held[0])
+def _moved(point: tuple[float, float], held: tuple[float, float]) -> bool:
+    return point[1] == held[1] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
 
 
 def solve_with_decay(

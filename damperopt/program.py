@@ -11,9 +11,9 @@ Each comes with two ways to say "stable with the margin at these speeds and load
 Stability is imposed at slots, each a speed and a load given as parameters, so that one program serves every round of the
 exchange; slots without a point impose nothing.
 
-Decay is imposed by cuts: ln(decay ratio) at one speed and load with its gradient, both from an integrator, as a linear
-function of the scaled variables about the design where it was simulated. The exchange renews them until the solution is
-that design, so that the multipliers are those of the decay itself.
+Decay is imposed by cuts: ln(decay ratio) at one speed and load with its gradient, both from an integrator, and the curvature
+that earlier gradients show, as a function of the scaled variables about the design where it was simulated. The exchange
+renews them until the solution is that design, so that the multipliers are those of the decay itself.
 """
 
 from __future__ import annotations
@@ -46,13 +46,16 @@ Points = Sequence[tuple[float, float]]
 CUTS = 12
 """Decay cuts that a program has room for."""
 
+NEVER = -1e3
+"""ln(decay ratio) of a cut that is not used."""
+
 EXCESS_PRICE = 1e3
 """kg per unit of ln(decay ratio) by which cuts may be exceeded: far above any multiplier, so that it is 0 where it can be."""
 
 
 @dataclass(frozen=True)
 class Cut:
-    """ln(decay ratio) at one speed and load to first order.
+    """ln(decay ratio) at one speed and load about one design.
 
     Attributes
     ----------
@@ -61,7 +64,9 @@ class Cut:
     value : float
         At the centre.
     gradient, centre : ndarray
-        (n,) with respect to the scaled variables, and where it was taken.
+        (n,) with respect to the scaled design variables, and where it was taken.
+    curvature : ndarray
+        (n, n) approximate second derivatives.
     """
 
     speed: float
@@ -69,10 +74,17 @@ class Cut:
     value: float
     gradient: np.ndarray
     centre: np.ndarray
+    curvature: np.ndarray
 
     def at(self, x: np.ndarray) -> float:
-        """Its value at scaled variables."""
-        return float(self.value + self.gradient @ (x - self.centre))
+        """Its value at scaled design variables."""
+        step = x - self.centre
+        return float(self.value + self.gradient @ step + step @ self.curvature @ step / 2)
+
+    def about_zero(self) -> np.ndarray:
+        """Value, gradient and curvature of the same function at x = 0, in one vector."""
+        linear = self.gradient - self.curvature @ self.centre
+        return np.concatenate([[self.at(0 * self.centre)], linear, self.curvature.ravel()])
 
 
 @dataclass(frozen=True)
@@ -125,11 +137,13 @@ class _Slots:
         self.decay_rows, self.excess = ca.SX(0, 1), ca.SX(0, 1)
         if problem.study.required.decay is not None:
             self.excess = ca.SX.sym("excess")
-            value, gradient = ca.SX.sym("value", CUTS), ca.SX.sym("gradient", CUTS, self.x.numel())
+            n, x = len(problem.design_names), self.x[: len(problem.design_names)]
+            cuts = ca.SX.sym("cuts", 1 + n + n * n, CUTS)
             ratio = data[problem.data_names.index("requirements.decay.ratio")]
-            # value: ln(decay ratio) of the cut extrapolated to x = 0
-            self.decay_rows = value + gradient @ self.x - ca.log(ratio) - np.log1p(-problem.study.solver.decay_reserve)
-            self.p = ca.vertcat(self.p, value, ca.vec(gradient))
+            monomials = ca.vertcat(1, x, ca.vec(x @ x.T) / 2)
+            limit = ca.log(ratio) + np.log1p(-problem.study.solver.decay_reserve)
+            self.decay_rows = cuts.T @ monomials - limit
+            self.p = ca.vertcat(self.p, ca.vec(cuts))
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
@@ -150,10 +164,10 @@ class _Slots:
         rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
         p = [problem.data, [problem.load_limit], V, F_z, rates]
         if self.decay_rows.numel():
-            value, gradient = np.full(CUTS, -1e3), np.zeros((CUTS, self.x.numel()))
-            for i, cut in enumerate(cuts):
-                value[i], gradient[i] = cut.value - cut.gradient @ cut.centre, cut.gradient
-            p += [value, gradient.ravel(order="F")]
+            columns = [cut.about_zero() for cut in cuts]
+            n = len(problem.design_names)
+            unused = np.append(NEVER, np.zeros(n + n * n))
+            p += [*columns, *[unused] * (CUTS - len(columns))]
         return np.concatenate(p), roots, rates
 
     def box(self, design: Mapping[str, float], radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

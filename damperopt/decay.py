@@ -12,22 +12,25 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
-from .dae import DAE
+from .dae import DAE, eliminate
 from .dynamics import build
 from .elements import Smooth
-from .integrators import Integrator, best_engine
+from .integrators import NEWTON_STEPS, Integrator, Solution, best_engine
 from .specs import Study
 from .stability import LinearModel
 from .symbols import data_values, symbolic
 from .trajectory import Decay, decay
 
-__all__ = ["DecayAnalysis", "DecayPoint", "decay_analysis", "latest_count", "loads_of"]
+__all__ = ["PEAKS", "DecayAnalysis", "DecayPoint", "decay_analysis", "latest_count", "loads_of"]
 
 PER_CYCLE = 64
 """Output points in a cycle of the fastest mode: the cubic between them is good to 2e-7 of the amplitude."""
 
 STRETCH_CYCLES = 4
 """Cycles of the fastest mode in one call of the integrator."""
+
+PEAKS = ("linkage_torque", "yaw_angle", "damper_stroke", "damper_force", "spring_force")
+"""What sizes the parts where `requirements.limit_event` is ``simulated``."""
 
 MAX_STRETCHES = 80
 """Calls after which a motion that has not completed its cycles is judged as it is: its yaw creeps."""
@@ -49,7 +52,8 @@ DIVERGED = 100.0
 class DecayPoint:
     """Decay at one speed [m/s] and load [N].
 
-    `gradient` holds d ln(ratio)/d ln(design variable), empty if not asked for; `time` is when the ratio is read [s].
+    `gradient` holds d ln(ratio)/d ln(design variable), empty if not asked for; `time` is when the ratio is read [s]; `peaks`
+    are the largest magnitudes of `PEAKS` and `peak_gradients` (5, n) those of their logarithms, where they size the parts.
     """
 
     speed: float
@@ -57,6 +61,8 @@ class DecayPoint:
     ratio: float
     gradient: np.ndarray
     time: float
+    peaks: np.ndarray
+    peak_gradients: np.ndarray
 
 
 def latest_count(state_matrix: np.ndarray, cycles: int) -> float:
@@ -80,6 +86,9 @@ class DecayAnalysis:
         self.model = LinearModel(study)
         self._dae: DAE = build(symbolic(study), Smooth())
         self._data = np.array(data_values(study))
+        self._design: tuple[float, ...] = ()
+        self._known: dict[tuple[float, float, bool], DecayPoint] = {}
+        self._outputs, self._output_slopes = _output_functions(self._dae)
         slopes = ca.jacobian(ca.vertcat(self._dae.ode, self._dae.alg), self._dae.data)
         self._moving = ca.DM(slopes.sparsity(), 1).full().any(axis=0)
         self._disturbance = f"requirements.decay.{'release' if self.requirement.release else 'kick'}"
@@ -123,45 +132,91 @@ class DecayAnalysis:
         -------
         DecayPoint
         """
-        integrator = self._with_sensitivities if gradient else self._plain
+        if data is not None:
+            return self._simulated(design, speed, load, gradient, data)
+        of_design = tuple(design[name] for name in self._dae.design_names)
+        if of_design != self._design:  # the search for the worst and for peaks look at the same speeds
+            self._design, self._known = of_design, {}
+        key = (float(speed), float(load), gradient)
+        if key not in self._known:
+            self._known[key] = self._simulated(design, speed, load, gradient, self._data)
+        return self._known[key]
+
+    def _simulated(
+        self, design: Mapping[str, float], speed: float, load: float, gradient: bool, data: np.ndarray
+    ) -> DecayPoint:
         values = [design[name] for name in self._dae.design_names]
-        data = self._data if data is None else data
-        start_of = dict(zip(self._dae.data_names, data, strict=True))
-        x0 = np.array([start_of.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
         A = self.model.state_matrix(ca.DM(values), speed, load, data).full()
-        stretch = STRETCH_CYCLES * 2 * math.pi / max(np.abs(np.linalg.eigvals(A).imag).max(), 20.0)
-        required, latest = self.requirement, latest_count(A, self.requirement.cycles)
-        nothing = np.zeros(len(values) if gradient else 0)
-        x, S, start = x0, None, 0.0
-        parts: list[np.ndarray] = []
-        for _ in range(MAX_STRETCHES):
-            try:
-                found = integrator(x, values, speed, load, stretch, start, S, data=data)
-            except FloatingPointError:
-                return DecayPoint(speed, load, DIVERGED, nothing, start)
-            x, S = found.x[:, -1], found.sensitivities[:, :, -1] if gradient else None
-            # yaw, its rate, and the sensitivities of both, row by row
-            rows = np.vstack([found.x[:2], *(found.sensitivities[:2].reshape(-1, found.x.shape[1]))])
-            parts.append(rows[:, 1 if parts else 0 :])
-            start += stretch
-            first = np.abs(parts[0][0]).max()
-            if abs(x[0]) > DIVERGED * first:
-                return DecayPoint(speed, load, DIVERGED, nothing, start)
-            settled = np.abs(rows[0]).max() < SETTLED * required.ratio * first and len(parts) > 1
-            history = np.hstack(parts)
-            time = np.linspace(0, start, history.shape[1])
-            answer = decay(time, history[0], history[1], required.cycles, min(latest, start) if settled else latest)
-            if answer is None:
-                continue
-            if settled or start >= answer.last + MORE_CYCLES * (answer.last - answer.first) / required.cycles:
-                slopes = _gradient(time, history, answer)
-                if gradient and answer.last == latest:
-                    slopes += _rate_at(time, history, latest) * self._latest_slopes(values, speed, load, data)
-                return DecayPoint(speed, load, answer.ratio, slopes, answer.last)
-        answer = decay(time, history[0], history[1], required.cycles, 0.9 * start)
+        latest = latest_count(A, self.requirement.cycles)
+        motion, answer = self._followed(values, speed, load, A, latest, gradient, data)
+        peaks, peak_slopes = self._peaks_of(motion, values, speed, load, gradient, data)
         if answer is None:
-            return DecayPoint(speed, load, 1.0, nothing, start)
-        return DecayPoint(speed, load, answer.ratio, _gradient(time, history, answer), answer.last)
+            grown = np.abs(motion.x[0, -1]) > np.abs(motion.x[0, 0])
+            nothing = np.zeros(len(values) if gradient else 0)
+            return DecayPoint(speed, load, DIVERGED if grown else 1.0, nothing, motion.time[-1], peaks, peak_slopes)
+        slopes = motion.log_slopes(answer.last) - motion.log_slopes(answer.first)
+        if gradient and answer.last == latest:
+            slopes += motion.log_rate(latest) * self._latest_slopes(values, speed, load, data)
+        return DecayPoint(speed, load, answer.ratio, slopes, answer.last, peaks, peak_slopes)
+
+    def _followed(
+        self,
+        values: list[float],
+        speed: float,
+        load: float,
+        A: np.ndarray,
+        latest: float,
+        gradient: bool,
+        data: np.ndarray,
+    ) -> tuple[_Motion, Decay | None]:
+        """The motion until its decay is decided; no decay where it diverges."""
+        integrator = self._with_sensitivities if gradient else self._plain
+        required, start = self.requirement, dict(zip(self._dae.data_names, data, strict=True))
+        x0 = np.array([start.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
+        stretch = STRETCH_CYCLES * 2 * math.pi / max(np.abs(np.linalg.eigvals(A).imag).max(), 20.0)
+        motion = _Motion(np.zeros(1), x0[:, None], np.zeros((x0.size, len(values) if gradient else 0, 1)))
+        for stretches in range(1, MAX_STRETCHES + 1):
+            x, S, t = motion.x[:, -1], motion.S[:, :, -1] if gradient else None, motion.time[-1]
+            try:
+                motion = motion.with_more(t, stretch, integrator(x, values, speed, load, stretch, t, S, data=data))
+            except FloatingPointError:
+                return motion, None
+            yaw, rate = motion.x[0], motion.x[1]
+            first = np.abs(yaw[: integrator.steps]).max()
+            if abs(yaw[-1]) > DIVERGED * first:
+                return motion, None
+            last_stretch = np.abs(yaw[-integrator.steps :]).max()
+            settled = stretches > 1 and last_stretch < SETTLED * required.ratio * first
+            deadline = min(latest, motion.time[-1]) if settled else latest
+            answer = decay(motion.time, yaw, rate, required.cycles, deadline)
+            if answer is not None:
+                cycle = (answer.last - answer.first) / required.cycles
+                if settled or motion.time[-1] >= answer.last + MORE_CYCLES * cycle:
+                    return motion, answer
+        return motion, decay(motion.time, motion.x[0], motion.x[1], required.cycles, 0.9 * motion.time[-1])
+
+    def _peaks_of(
+        self, motion: _Motion, values: list[float], speed: float, load: float, gradient: bool, data: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Largest magnitudes of `PEAKS`, and their derivatives to ln(design variables); empty unless they size the parts."""
+        if self.study.required.limit_event != "simulated":
+            return np.zeros(0), np.zeros((0, 0))
+        m, point = motion.time.size, (speed, load)
+        columns = [ca.repmat(ca.DM(v), 1, m) for v in (values, data)]
+        found = self._outputs(motion.x, columns[0], *point, columns[1]).full()
+        peaks, slopes = np.zeros(len(PEAKS)), np.zeros((len(PEAKS), len(values) if gradient else 0))
+        for k, row in enumerate(found):
+            top = int(np.abs(row).argmax())
+            near = slice(min(max(top - 2, 0), m - 5), min(max(top - 2, 0), m - 5) + 5)
+            weights = np.eye(5)[top - near.start] if top == 0 else _weights_at_peak(np.abs(row[near]))
+            peaks[k] = np.abs(row[near]) @ weights
+            if gradient:
+                rows = [
+                    self._output_slopes(motion.x[:, i], motion.S[:, :, i], values, *point, data)[k, :].full().ravel()
+                    for i in range(near.start, near.stop)
+                ]
+                slopes[k] = np.sign(row[top]) * weights @ np.array(rows) / peaks[k]
+        return peaks, slopes
 
     def _latest_slopes(self, values: list[float], speed: float, load: float, data: np.ndarray) -> np.ndarray:
         """d `latest_count`/d ln(design variable) [s], by central differences."""
@@ -173,8 +228,8 @@ class DecayAnalysis:
         steps = DIFFERENCE * np.eye(len(values))
         return np.array([(latest(1 + h) - latest(1 - h)) / (2 * DIFFERENCE) for h in steps])
 
-    def data_gradient(self, design: Mapping[str, float], speed: float, load: float) -> dict[str, float]:
-        """d ln(ratio)/d number of the study, by central differences.
+    def data_gradient(self, design: Mapping[str, float], speed: float, load: float) -> dict[str, np.ndarray]:
+        """d ln(ratio)/d number of the study, and those of the peaks if they size the parts, by central differences.
 
         Parameters
         ----------
@@ -186,8 +241,12 @@ class DecayAnalysis:
         Returns
         -------
         dict
-            By key path; ``speed`` and ``load`` for the operating point. Numbers without effect are left out.
+            By key path; ``speed`` and ``load`` for the operating point. Numbers without effect are left out. Each (1,) or
+            (6,): ratio, then `PEAKS`.
         """
+
+        def difference(above: DecayPoint, below: DecayPoint, width: float) -> np.ndarray:
+            return np.log(np.append(above.ratio, above.peaks) / np.append(below.ratio, below.peaks)) / width
 
         slopes, h = {}, DIFFERENCE
         for i, name in enumerate(self._dae.data_names):
@@ -198,11 +257,11 @@ class DecayAnalysis:
             up[i] += width
             down[i] -= width
             above, below = (self.at(design, speed, load, data=data) for data in (up, down))
-            slopes[name] = math.log(above.ratio / below.ratio) / (2 * width)
+            slopes[name] = difference(above, below, 2 * width)
         above, below = (self.at(design, speed * (1 + sign * h), load) for sign in (1, -1))
-        slopes["speed"] = math.log(above.ratio / below.ratio) / (2 * h * speed)
+        slopes["speed"] = difference(above, below, 2 * h * speed)
         above, below = (self.at(design, speed, load * (1 + sign * h)) for sign in (1, -1))
-        slopes["load"] = math.log(above.ratio / below.ratio) / (2 * h * load)
+        slopes["load"] = difference(above, below, 2 * h * load)
         return slopes
 
     def worst(self, design: Mapping[str, float], refined: bool = True) -> list[DecayPoint]:
@@ -228,20 +287,58 @@ class DecayAnalysis:
                 points += self._peaks(design, load, refined)
         return sorted(points, key=lambda point: -point.ratio)
 
-    def _peaks(self, design: Mapping[str, float], load: float, refined: bool) -> list[DecayPoint]:
-        count = self.study.solver.decay_speeds
+    def largest_peaks(self, design: Mapping[str, float], refined: bool = True) -> tuple[np.ndarray, list[tuple[float, float]]]:
+        """Largest magnitudes of `PEAKS` over the envelope, and where each is met.
+
+        Parameters
+        ----------
+        design : mapping
+            Design variables by name [SI].
+        refined : bool
+            Search between the speeds of the first look.
+
+        Returns
+        -------
+        tuple
+            (5,) peaks [SI], and five (speed, load) [m/s], [N].
+        """
+        speeds = self.requirement.speeds or self._first_look()
+        looked = [self.at(design, speed, load) for load in loads_of(self.study) for speed in speeds]
+        best = []
+        for k in range(len(PEAKS)):
+            top = int(np.argmax([point.peaks[k] for point in looked]))
+            best.append(self._refined_peak(design, k, looked[top], speeds) if refined else looked[top])
+        return np.array([point.peaks[k] for k, point in enumerate(best)]), [(p.speed, p.load) for p in best]
+
+    def _refined_peak(self, design: Mapping[str, float], k: int, point: DecayPoint, speeds: list[float]) -> DecayPoint:
+        """Where the k-th of `PEAKS` is largest between the neighbours of `point` among the speeds."""
+        if self.requirement.speeds is not None or len(speeds) == 1:
+            return point
+        i = speeds.index(point.speed)
+
+        def lower(speed: float) -> float:
+            return -float(self.at(design, float(speed), point.load).peaks[k])
+
+        bounds = speeds[max(i - 1, 0)], speeds[min(i + 1, len(speeds) - 1)]
+        found = minimize_scalar(lower, bounds=bounds, method="bounded", options={"xatol": 1e-3 * speeds[-1], "maxiter": 8})
+        other = self.at(design, float(found.x), point.load)
+        return other if other.peaks[k] > point.peaks[k] else point
+
+    def _first_look(self) -> list[float]:
         low, high = self.study.envelope.speed.min, self.study.envelope.speed.max
-        if low == high:
-            return [self.at(design, low, load)]
-        speeds = np.clip(np.geomspace(low, high, count), low, high)
-        looked = [self.at(design, float(speed), load) for speed in speeds]
+        return np.unique(np.clip(np.geomspace(low, high, self.study.solver.decay_speeds), low, high)).tolist()
+
+    def _peaks(self, design: Mapping[str, float], load: float, refined: bool) -> list[DecayPoint]:
+        speeds, high = self._first_look(), self.study.envelope.speed.max
+        count = len(speeds)
+        looked = [self.at(design, speed, load) for speed in speeds]
         heights = [point.ratio for point in looked]
         found = []
         for i, point in enumerate(looked):
             left, right = max(i - 1, 0), min(i + 1, count - 1)
             if heights[i] < max(heights[left], heights[right]):
                 continue
-            if not refined:
+            if not refined or count == 1:
                 found.append(point)
                 continue
             best = minimize_scalar(
@@ -272,21 +369,55 @@ def loads_of(study: Study) -> tuple[float, ...]:
     return tuple(np.linspace(envelope.loads[0], envelope.loads[1], 5).tolist())
 
 
-def _rate_at(time: np.ndarray, history: np.ndarray, moment: float) -> float:
-    """d ln|yaw|/dt [1/s]."""
-    spline = CubicHermiteSpline(time, history[0], history[1])
-    return float(spline(moment, 1) / spline(moment))
+@dataclass(frozen=True)
+class _Motion:
+    """States (n, m) and their sensitivities to ln(design variables) (n, d, m) at m times."""
 
+    time: np.ndarray
+    x: np.ndarray
+    S: np.ndarray
 
-def _gradient(time: np.ndarray, history: np.ndarray, answer: Decay) -> np.ndarray:
-    """d ln(ratio)/d ln(design) from the sensitivities at the two extrema, where the time itself has no effect."""
-    d = (len(history) - 2) // 2
-    # yaw and its sensitivities, and the rates of all of these
-    values, rates = history[[0, *range(2, 2 + d)]], history[[1, *range(2 + d, 2 + 2 * d)]]
+    def with_more(self, start: float, duration: float, found: Solution) -> _Motion:
+        """With a stretch that begins where this ends."""
+        time = start + np.linspace(0, duration, found.x.shape[1])[1:]
+        return _Motion(
+            np.append(self.time, time),
+            np.hstack([self.x, found.x[:, 1:]]),
+            np.concatenate([self.S, found.sensitivities[:, :, 1:]], axis=2),
+        )
 
-    def relative(moment: float) -> np.ndarray:
-        i = slice(max(int(np.searchsorted(time, moment)) - 1, 0), None)
-        near = CubicHermiteSpline(time[i][:2], values[:, i][:, :2], rates[:, i][:, :2], axis=1)(moment)
+    def log_slopes(self, moment: float) -> np.ndarray:
+        """d ln|yaw|/d ln(design variable) at a time."""
+        i = min(max(int(np.searchsorted(self.time, moment)) - 1, 0), self.time.size - 2)
+        pair = slice(i, i + 2)
+        values, rates = (np.vstack([self.x[k, pair], self.S[k, :, pair].reshape(-1, 2)]) for k in (0, 1))
+        near = CubicHermiteSpline(self.time[pair], values, rates, axis=1)(moment)
         return near[1:] / near[0]
 
-    return relative(answer.last) - relative(answer.first)
+    def log_rate(self, moment: float) -> float:
+        """d ln|yaw|/dt [1/s]."""
+        spline = CubicHermiteSpline(self.time, self.x[0], self.x[1])
+        return float(spline(moment, 1) / spline(moment))
+
+
+def _output_functions(dae: DAE) -> tuple[ca.Function, ca.Function]:
+    """`PEAKS` of a state, and their derivatives to ln(design variables) given the sensitivities of the state."""
+    model = eliminate(dae, NEWTON_STEPS)
+    outputs = ca.vertcat(*(model.x[0] if name == "yaw_angle" else model.outputs[name] for name in PEAKS))
+    outputs = ca.substitute(outputs, model.yaw_torque, 0)
+    inputs = [model.design, model.speed, model.load, model.data]
+    S = ca.SX.sym("S", model.x.numel(), model.design.numel())
+    slopes = ca.jacobian(outputs, model.x) @ S + ca.jacobian(outputs, model.design) @ ca.diag(model.design)
+    return (
+        ca.Function("outputs", [model.x, *inputs], [outputs]),
+        ca.Function("output_slopes", [model.x, S, *inputs], [ca.densify(slopes)]),
+    )
+
+
+def _weights_at_peak(values: np.ndarray) -> np.ndarray:
+    """Weights of five even samples that interpolate where their parabola through the three highest peaks."""
+    nodes, top = np.arange(5.0), int(np.clip(values.argmax(), 1, 3))
+    left, middle, right = values[top - 1 : top + 2]
+    bend = left - 2 * middle + right
+    u = top + (0.5 * (left - right) / bend if bend else 0.0)
+    return np.array([np.prod((u - np.delete(nodes, i)) / (nodes[i] - np.delete(nodes, i))) for i in range(5)])

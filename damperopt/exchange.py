@@ -40,6 +40,9 @@ FIRST_RADIUS = 1.0
 STILL = 1e-6
 """Step of the scaled variables that is nothing: the model of the decay ratio is then exact to its square."""
 
+LEARNING_STEP, PEAK_LEARNING_STEP = 1e-5, 3e-3
+"""Steps below which the difference of two gradients, of decay ratios or of peaks, shows their errors and no curvature."""
+
 REFINED = 1e-2
 """Step of the scaled variables below which the worst speeds are looked for in earnest."""
 
@@ -214,6 +217,7 @@ class DecayHold:
         self._problem, self._analysis = solver.problem, solver.decay
         self._always, self._held = list(more), list[tuple[float, float]]()
         self._last: list[Cut] = []
+        self._last_peaks: list[Cut] = []
 
     def worst(self, design: Mapping[str, float], refined: bool) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
@@ -224,30 +228,51 @@ class DecayHold:
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
-        """Decay at the held points about `design`; curvature by symmetric rank-one updates from round to round."""
-        problem = self._problem
-        x = problem.scaled(design)[:-1]
-        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:-1]])
-        found = []
-        for speed, load in (*self._always, *self._held):
-            point = self._analysis.at(design, speed, load, gradient=True)
-            gradient = point.gradient * slopes
-            curvature = self._curvature(speed, load, x, gradient)
-            found.append(Cut(speed, load, float(np.log(point.ratio)), gradient, x, curvature))
-        self._last = found
-        return found
+        """Decay at the held points about `design`."""
+        points = [self._analysis.at(design, *place, gradient=True) for place in (*self._always, *self._held)]
+        numbers = [(p.speed, p.load, p.ratio, p.gradient) for p in points]
+        # a speed that has moved keeps what was learnt
+        before = [next((c for c in self._last if _moved(n[:2], (c.speed, c.load))), None) for n in numbers]
+        self._last = self._about(design, numbers, before, LEARNING_STEP)
+        return self._last
 
-    def _curvature(self, speed: float, load: float, x: np.ndarray, gradient: np.ndarray) -> np.ndarray:
-        """Second derivatives after an update with the last cut at this point, or at the speed that has moved here."""
-        last = next((cut for cut in self._last if _moved((speed, load), (cut.speed, cut.load))), None)
-        if last is None:
-            return np.zeros((x.size, x.size))
-        step = x - last.centre
-        surprise = gradient - last.gradient - last.curvature @ step
-        along = surprise @ step
-        if abs(along) <= 1e-8 * np.linalg.norm(surprise) * np.linalg.norm(step):
-            return last.curvature
-        return last.curvature + np.outer(surprise, surprise) / along
+    def peaks(self, design: Mapping[str, float], refined: bool) -> list[Cut]:
+        """Simulated peaks about `design`; empty where a torque is the limit event."""
+        if self._problem.study.required.limit_event != "simulated":
+            return []
+        _, places = self._analysis.largest_peaks(design, refined)
+        points = [self._analysis.at(design, *place, gradient=True) for place in places]
+        numbers = [(p.speed, p.load, p.peaks[k], p.peak_gradients[k]) for k, p in enumerate(points)]
+        before: Sequence[Cut | None] = self._last_peaks or [None] * len(points)
+        self._last_peaks = self._about(design, numbers, before, PEAK_LEARNING_STEP)
+        return self._last_peaks
+
+    def _about(
+        self,
+        design: Mapping[str, float],
+        numbers: Sequence[tuple[float, float, float, np.ndarray]],
+        before: Sequence[Cut | None],
+        learning_step: float,
+    ) -> list[Cut]:
+        """Cuts of (speed, load, value, d ln value/d ln design); curvature by symmetric rank-one updates of those before."""
+        x = self._problem.scaled(design)[:-1]
+        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in self._problem.variables[:-1]])
+        cuts = []
+        for (speed, load, value, gradient), last in zip(numbers, before, strict=True):
+            scaled = gradient * slopes
+            cuts.append(Cut(speed, load, float(np.log(value)), scaled, x, _curvature(last, x, scaled, learning_step)))
+        return cuts
+
+
+def _curvature(last: Cut | None, x: np.ndarray, gradient: np.ndarray, learning_step: float) -> np.ndarray:
+    if last is None:
+        return np.zeros((x.size, x.size))
+    step = x - last.centre
+    surprise = gradient - last.gradient - last.curvature @ step
+    along = surprise @ step
+    if np.linalg.norm(step) < learning_step or abs(along) <= 1e-8 * np.linalg.norm(surprise) * np.linalg.norm(step):
+        return last.curvature
+    return last.curvature + np.outer(surprise, surprise) / along
 
 
 def _moved(point: tuple[float, float], held: tuple[float, float]) -> bool:
@@ -290,9 +315,9 @@ def solve_with_decay(
     least_ratio = required.ratio * (1 - study.solver.decay_reserve / 2)
     hold, points, design, radius = DecayHold(solver, decay_points), list(points), dict(start), FIRST_RADIUS
     decay, looked = hold.worst(design, refined=False), True
-    cuts = hold.cuts(design)
+    cuts, peaks = hold.cuts(design), hold.peaks(design, refined=False)
     for rounds in range(1, DECAY_ROUNDS + 1):
-        solution = solver.solve(design, points, form, cuts, radius=radius, **options)
+        solution = solver.solve(design, points, form, cuts, peaks=peaks, radius=radius, **options)
         if not solution.converged:
             if radius > 8:
                 return EnvelopeSolution(solution, (), rounds, False)
@@ -306,7 +331,7 @@ def solve_with_decay(
         looked = step < REFINED or rounds % 4 == 0
         if looked:
             decay = hold.worst(design, refined=step < REFINED)
-        before, cuts = cuts, hold.cuts(design)
+        before, cuts, peaks = cuts, hold.cuts(design), hold.peaks(design, refined=step < REFINED)
         if step < STILL and looked and not violating:
             met = worst[0].abscissa <= allowed and decay[0].ratio <= least_ratio
             if met or solution.extra[0] > STILL:  # all that the ratio can be lowered to

@@ -1,7 +1,8 @@
 """Mass of a damper layout, part by part, sized by the limit event.
 
 The limit event is a yaw torque, not an imposed angle: T_lim gives the static yaw psi_lim = T_lim/k_psi and the peak
-rate psi_lim sqrt(k_psi/I_z). Everything is closed form in the design variables but for the rod diameter, which must
+rate psi_lim sqrt(k_psi/I_z). Or it is what simulated motions show: the same estimates, made from the yaw angle of a release or
+a kick, times factors from simulation. Everything is closed form in the design variables but for the rod diameter, which must
 satisfy two limits and is therefore a variable of its own (its mass grows with it, so the larger limit is met exactly).
 """
 
@@ -38,6 +39,10 @@ class LimitEvent:
         Lateral force at the apex of the torque links [N].
     arm_moment : SX
         Root bending moment of the bending arm [N m]; 0 without an arm.
+    spring_force : SX
+        Force of the spring or arm tip [N].
+    spring_energy : SX
+        Energy that the spring stores [J].
     """
 
     torque: Any
@@ -47,9 +52,16 @@ class LimitEvent:
     damper_force: Any
     apex_force: Any
     arm_moment: Any
+    spring_force: Any
+    spring_energy: Any
+
+    @property
+    def peaks(self) -> Any:
+        """What a simulation can show instead, in the order of `decay.PEAKS`."""
+        return ca.vertcat(self.torque, self.yaw, self.stroke, self.damper_force, self.spring_force)
 
 
-def limit_event(study: Any, linkage: Linkage, c_lambda: Any, load: Any) -> LimitEvent:
+def limit_event(study: Any, linkage: Linkage, c_lambda: Any, load: Any, factors: Any) -> LimitEvent:
     """Loads of the limit event at vertical load `load` [N].
 
     Parameters
@@ -61,26 +73,41 @@ def limit_event(study: Any, linkage: Linkage, c_lambda: Any, load: Any) -> Limit
         Damping of the damper [N s/m].
     load : SX
         The largest vertical load of the envelope [N].
+    factors : SX
+        (5,) on torque, yaw, stroke, damper force and spring force: simulated over estimated peaks, or 1.
 
     Returns
     -------
     LimitEvent
     """
     torque = study.requirements.limit_torque
-    if torque is None:
+    if study.requirements.limit_event == "simulated":
+        torque = linkage.torsional_stiffness * _disturbed_yaw(study, linkage)
+    elif torque is None:
         side_share = ca.fabs(effective_caster(study.gear)) * peak_side_force(study.tyre, load)
         torque = study.requirements.limit_torque_factor * (peak_aligning_moment(study.tyre, load) + side_share)
     yaw = torque / linkage.torsional_stiffness
     yaw_rate = yaw * ca.sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)
+    spring_force, force = factors[4] * torque / linkage.spring_lever, c_lambda * linkage.damper_lever * yaw_rate
     return LimitEvent(
-        torque=torque,
-        yaw=yaw,
+        torque=factors[0] * torque,
+        yaw=factors[1] * yaw,
         yaw_rate=yaw_rate,
-        stroke=linkage.damper_lever * yaw,
-        damper_force=c_lambda * linkage.damper_lever * yaw_rate,
-        apex_force=torque / linkage.reach,
-        arm_moment=0 if linkage.arm_length is None else torque / linkage.spring_lever * linkage.arm_length,
+        stroke=factors[2] * linkage.damper_lever * yaw,
+        damper_force=factors[3] * force,
+        apex_force=factors[0] * torque / linkage.reach,
+        arm_moment=0 if linkage.arm_length is None else spring_force * linkage.arm_length,
+        spring_force=spring_force,
+        spring_energy=factors[1] * factors[4] * torque * yaw / 2,
     )
+
+
+def _disturbed_yaw(study: Any, linkage: Linkage) -> Any:
+    """Yaw angle of the release, or to which the kick leads without any damping."""
+    decay = study.requirements.decay
+    if decay.release is not None:
+        return ca.fabs(decay.release.yaw_angle)
+    return ca.fabs(decay.kick.yaw_rate) / ca.sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)
 
 
 def allowable_stress(material: Any, safety_factor: Any) -> Any:
@@ -158,11 +185,10 @@ def arm_stress(study: Any, design: Mapping[str, Any], event: LimitEvent) -> Any:
 
 
 def _spring_mass(study: Any, event: LimitEvent) -> Any:
-    # Belleville stack: energy T psi/2 over eta sigma^2/(2 E) per volume
+    # Belleville stack: energy over eta sigma^2/(2 E) per volume
     steel = study.mass.damper_material
     sigma = allowable_stress(steel, study.requirements.safety_factor)
-    energy = event.torque * event.yaw / 2
-    return steel.density * energy / (study.mass.spring_utilisation * sigma**2 / (2 * steel.youngs_modulus))
+    return steel.density * event.spring_energy / (study.mass.spring_utilisation * sigma**2 / (2 * steel.youngs_modulus))
 
 
 def _damper_mass(study: Any, event: LimitEvent, rod_diameter: Any) -> Any:

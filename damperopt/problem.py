@@ -8,12 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from .constraints import Constraint, geometry, strength
 from .dampers import linkage
+from .decay import PEAKS, decay_analysis
 from .dynamics import build
 from .objectives import limit_event, mass_parts, rod_diameters
 from .specs import Study
@@ -25,6 +27,8 @@ __all__ = ["DesignProblem", "ScaledVariable"]
 
 _LINEAR = ("gamma",)
 ROD = "rod_diameter"
+ESTIMATED = np.ones(len(PEAKS))
+"""Factors of a limit event that is not simulated."""
 
 
 @dataclass(frozen=True)
@@ -70,27 +74,29 @@ class DesignProblem:
         self.data = np.array(data_values(study))
         self.data_names = data_names(study)
         self.load_limit = max(study.envelope.loads)
+        self._factors: dict[tuple[float, ...], np.ndarray] = {}
 
         symbols = symbolic(study)
         dae = build(symbols)
         design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
         rod, load = ca.SX.sym(ROD), ca.SX.sym("load_limit")
         link = linkage(symbols.study.damper, design, symbols.study.material.youngs_modulus)
-        event = limit_event(symbols.study, link, design["c_lambda"], load)
+        factors = ca.SX.sym("factors", len(PEAKS))
+        event = limit_event(symbols.study, link, design["c_lambda"], load, factors)
         parts = mass_parts(symbols.study, design, link, event, rod)
         self.constraints: tuple[Constraint, ...] = tuple(
             strength(symbols.study, design, event, rod) + geometry(symbols.study, design, link, event, rod)
         )
         self.part_names = tuple(parts)
         self.constraint_names = tuple(c.name for c in self.constraints)
-        inputs = [dae.design, rod, symbols.data, load]
+        inputs = [dae.design, rod, symbols.data, load, factors]
         self._mass = ca.Function("mass", inputs, [ca.vertcat(*parts.values())])
         self._rows = ca.Function("rows", inputs, [ca.vertcat(*(c.row for c in self.constraints))])
         self._values = ca.Function("values", inputs, [ca.vertcat(*(ca.horzcat(c.value, c.limit) for c in self.constraints))])
-        self._rod = ca.Function("rod", [*inputs[:1], *inputs[2:]], [ca.vertcat(*rod_diameters(symbols.study, event).values())])
-        self._yaw = ca.Function(
-            "yaw", [*inputs[:1], *inputs[2:]], [link.torsional_stiffness, link.torsional_damping, event.torque]
-        )
+        without_rod = [*inputs[:1], *inputs[2:]]
+        self._rod = ca.Function("rod", without_rod, [ca.vertcat(*rod_diameters(symbols.study, event).values())])
+        self._event = ca.Function("event", without_rod, [event.peaks])
+        self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, link.torsional_damping])
 
         margin = symbols.study.requirements.stability_margin + study.solver.margin_reserve
         shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
@@ -103,13 +109,20 @@ class DesignProblem:
         given = self.study.variable(name)
         return ScaledVariable(name, given.start, given.min, given.max, name not in _LINEAR)
 
-    def mass_and_rows(self, design: ca.SX, rod: ca.SX, data: ca.SX, load_limit: ca.SX) -> tuple[ca.SX, ca.SX]:
+    def mass_and_rows(
+        self, design: ca.SX, rod: ca.SX, data: ca.SX, load_limit: ca.SX, factors: Any = ESTIMATED
+    ) -> tuple[ca.SX, ca.SX]:
         """Total mass [kg] and the strength and geometry rows (<= 0) as expressions."""
-        return ca.sum1(self._mass(design, rod, data, load_limit)), self._rows(design, rod, data, load_limit)
+        inputs = [design, rod, data, load_limit, factors]
+        return ca.sum1(self._mass(*inputs)), self._rows(*inputs)
 
-    def stiffness_and_damping(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> tuple[ca.SX, ca.SX]:
+    def estimated_peaks(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> ca.SX:
+        """(5,) `decay.PEAKS` of the limit event before any simulation, as expressions."""
+        return self._event(design, data, load_limit, ESTIMATED)
+
+    def stiffness_and_damping(self, design: ca.SX, data: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Torsional stiffness [N m/rad] and damping [N m s/rad] as expressions."""
-        k_psi, c_psi, _ = self._yaw(design, data, load_limit)
+        k_psi, c_psi = self._yaw(design, data)
         return k_psi, c_psi
 
     def physical(self, x: ca.SX) -> ca.SX:
@@ -136,21 +149,39 @@ class DesignProblem:
         return {name: (float(v), float(lim)) for name, (v, lim) in zip(self.constraint_names, pairs, strict=True)}
 
     def yaw_numbers(self, design: Mapping[str, float]) -> dict[str, float]:
-        """Effective torsional stiffness and damping and the limit torque of a design."""
-        stiffness, damping, torque = self._yaw(self._vector(design), self.data, self.load_limit)
-        return {"torsional_stiffness": float(stiffness), "torsional_damping": float(damping), "limit_torque": float(torque)}
+        """Effective torsional stiffness and damping of a design."""
+        stiffness, damping = self._yaw(self._vector(design), self.data)
+        return {"torsional_stiffness": float(stiffness), "torsional_damping": float(damping)}
+
+    def limit_event(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Peaks of the limit event by name [SI], in the order of `decay.PEAKS`."""
+        peaks = self._event(self._vector(design), self.data, self.load_limit, self.factors(design))
+        return dict(zip(PEAKS, peaks.full().ravel().tolist(), strict=True))
+
+    def factors(self, design: Mapping[str, float]) -> np.ndarray:
+        """(5,) simulated over estimated peaks of the limit event; ones where a torque is the limit event."""
+        if self.study.required.limit_event != "simulated":
+            return ESTIMATED
+        key = tuple(self._vector(design))
+        if key not in self._factors:
+            simulated = decay_analysis(self.study).largest_peaks(design)[0]
+            estimated = self._event(self._vector(design), self.data, self.load_limit, ESTIMATED).full().ravel()
+            self._factors = {key: simulated / estimated}  # the last design is asked for several times
+        return self._factors[key]
 
     def rod_diameter(self, design: Mapping[str, float]) -> float:
         """Least rod diameter that meets yield and buckling [m]."""
-        return float(self._rod(self._vector(design), self.data, self.load_limit).full().max())
+        return float(self._rod(self._vector(design), self.data, self.load_limit, self.factors(design)).full().max())
 
-    def over_designs(self, designs: np.ndarray) -> dict[str, np.ndarray]:
+    def over_designs(self, designs: np.ndarray, factors: np.ndarray = ESTIMATED) -> dict[str, np.ndarray]:
         """Everything that needs no speed, for many designs at once.
 
         Parameters
         ----------
         designs : ndarray
             (m, n) design variables in the order of `design_names` [SI].
+        factors : ndarray
+            As `factors`, the same for all.
 
         Returns
         -------
@@ -158,11 +189,11 @@ class DesignProblem:
             ``mass`` (m,) [kg], ``rows`` (m, c) as `rows`, ``torsional_stiffness`` and ``torsional_damping`` (m,).
         """
         columns, data, load = designs.T, ca.DM(self.data), self.load_limit
-        rod = self._rod(columns, data, load).full().max(axis=0)[None, :]
-        stiffness, damping, _ = self._yaw(columns, data, load)
+        rod = self._rod(columns, data, load, factors).full().max(axis=0)[None, :]
+        stiffness, damping = self._yaw(columns, data)
         return {
-            "mass": self._mass(columns, rod, data, load).full().sum(axis=0),
-            "rows": self._rows(columns, rod, data, load).full().T,
+            "mass": self._mass(columns, rod, data, load, factors).full().sum(axis=0),
+            "rows": self._rows(columns, rod, data, load, factors).full().T,
             "torsional_stiffness": stiffness.full().ravel(),
             "torsional_damping": damping.full().ravel(),
         }
@@ -171,14 +202,16 @@ class DesignProblem:
         return np.array([design[name] for name in self.design_names])
 
     def _call(self, function: ca.Function, design: Mapping[str, float]) -> list[float]:
-        result = function(self._vector(design), self.rod_diameter(design), self.data, self.load_limit)
+        rod, factors = self.rod_diameter(design), self.factors(design)
+        result = function(self._vector(design), rod, self.data, self.load_limit, factors)
         return result.full().ravel(order="F").tolist()
 
     # the scaled variables
 
     def scaled(self, design: Mapping[str, float]) -> np.ndarray:
-        """Scaled variables of a design, the rod sized a little above its limits."""
-        full = {**design, ROD: 1.02 * self.rod_diameter(design)}
+        """Scaled variables of a design, the rod sized a little above its limits (estimated, if they are simulated)."""
+        rod = float(self._rod(self._vector(design), self.data, self.load_limit, ESTIMATED).full().max())
+        full = {**design, ROD: 1.02 * rod}
         return np.array([v.scale(full[v.name]) for v in self.variables])
 
     def unscaled(self, x: Sequence[float]) -> dict[str, float]:

@@ -13,7 +13,8 @@ exchange; slots without a point impose nothing.
 
 Decay is imposed by cuts: ln(decay ratio) at one speed and load with its gradient, both from an integrator, and the curvature
 that earlier gradients show, as a function of the scaled variables about the design where it was simulated. The exchange
-renews them until the solution is that design, so that the multipliers are those of the decay itself.
+renews them until the solution is that design, so that the multipliers are those of the decay itself. Simulated peaks that
+size the parts are modelled in the same way.
 """
 
 from __future__ import annotations
@@ -26,8 +27,9 @@ from typing import Any, ClassVar, Protocol
 import casadi as ca
 import numpy as np
 
+from .decay import PEAKS
 from .hurwitz import characteristic_polynomial, lienard_chipart
-from .problem import DesignProblem
+from .problem import ESTIMATED, DesignProblem
 
 __all__ = [
     "CUTS",
@@ -55,7 +57,7 @@ EXCESS_PRICE = 1e3
 
 @dataclass(frozen=True)
 class Cut:
-    """ln(decay ratio) at one speed and load about one design.
+    """ln(decay ratio), or ln(peak), at one speed and load about one design.
 
     Attributes
     ----------
@@ -132,15 +134,21 @@ class _Slots:
         design, rod = physical[:-1], physical[-1]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         V, F_z, self.rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
-        self.mass, self.rows = problem.mass_and_rows(design, rod, data, load_limit)
         self.p = ca.vertcat(data, load_limit, V, F_z, self.rate)
+        factors: Any = ESTIMATED
+        x = self.x[: len(problem.design_names)]
+        monomials = ca.vertcat(1, x, ca.vec(x @ x.T) / 2)
+        if problem.study.required.limit_event == "simulated":
+            peaks, simulated = ca.SX.sym("peaks", monomials.numel(), len(PEAKS)), ca.SX.sym("simulated")
+            estimated = problem.estimated_peaks(design, data, load_limit)
+            factors = ca.exp(simulated * (peaks.T @ monomials - ca.log(estimated)))
+            self.p = ca.vertcat(self.p, simulated, ca.vec(peaks))
+        self.mass, self.rows = problem.mass_and_rows(design, rod, data, load_limit, factors)
         self.decay_rows, self.excess = ca.SX(0, 1), ca.SX(0, 1)
         if problem.study.required.decay is not None:
             self.excess = ca.SX.sym("excess")
-            n, x = len(problem.design_names), self.x[: len(problem.design_names)]
-            cuts = ca.SX.sym("cuts", 1 + n + n * n, CUTS)
+            cuts = ca.SX.sym("cuts", monomials.numel(), CUTS)
             ratio = data[problem.data_names.index("requirements.decay.ratio")]
-            monomials = ca.vertcat(1, x, ca.vec(x @ x.T) / 2)
             limit = ca.log(ratio) + np.log1p(-problem.study.solver.decay_reserve)
             self.decay_rows = cuts.T @ monomials - limit
             self.p = ca.vertcat(self.p, ca.vec(cuts))
@@ -152,7 +160,12 @@ class _Slots:
         ]
 
     def numbers(
-        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), margin: float | None = None
+        self,
+        design: Mapping[str, float],
+        points: Points,
+        cuts: Sequence[Cut] = (),
+        peaks: Sequence[Cut] = (),
+        margin: float | None = None,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Common parameters; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem
@@ -163,9 +176,12 @@ class _Slots:
         roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + shift
         rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
         p = [problem.data, [problem.load_limit], V, F_z, rates]
+        n = len(problem.design_names)
+        if problem.study.required.limit_event == "simulated":
+            models = [peak.about_zero() for peak in peaks] or [np.zeros(1 + n + n * n)] * len(PEAKS)
+            p += [[float(bool(peaks))], *models]
         if self.decay_rows.numel():
             columns = [cut.about_zero() for cut in cuts]
-            n = len(problem.design_names)
             unused = np.append(NEVER, np.zeros(n + n * n))
             p += [*columns, *[unused] * (CUTS - len(columns))]
         return np.concatenate(p), roots, rates
@@ -274,11 +290,17 @@ class _MassProgram:
         }
 
     def instance(
-        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), radius: float = np.inf, **options: Any
+        self,
+        design: Mapping[str, float],
+        points: Points,
+        cuts: Sequence[Cut] = (),
+        peaks: Sequence[Cut] = (),
+        radius: float = np.inf,
+        **options: Any,
     ) -> Instance:
         """The program at `points`, started and scaled at `design`, no design variable further than `radius` from there."""
         common = self._common
-        p, roots, rates = common.numbers(design, points, cuts)
+        p, roots, rates = common.numbers(design, points, cuts, peaks)
         x0, lower, upper = common.box(design, radius)
         none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
         own = Instance(
@@ -345,7 +367,13 @@ class _ElasticProgram:
         }
 
     def instance(
-        self, design: Mapping[str, float], points: Points, cuts: Sequence[Cut] = (), radius: float = np.inf, **options: Any
+        self,
+        design: Mapping[str, float],
+        points: Points,
+        cuts: Sequence[Cut] = (),
+        peaks: Sequence[Cut] = (),
+        radius: float = np.inf,
+        **options: Any,
     ) -> Instance:
         """The program at `points`, started at `design`; the constraints named in the option `relaxed` may give way."""
         common, problem = self._common, self._common.problem
@@ -355,7 +383,7 @@ class _ElasticProgram:
         abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
         kept = min(self._margin, -abscissa - 2 * problem.study.solver.margin_reserve)
         start = np.where(may_move, np.append(slack + 1e-3, kept), np.append(np.zeros(slack.size), self._margin))
-        p, roots, rates = common.numbers(design, points, cuts, margin=float(start[-1]))
+        p, roots, rates = common.numbers(design, points, cuts, peaks, margin=float(start[-1]))
         x0, lower, upper = common.box(design, radius)
         none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
         own = Instance(

@@ -42,7 +42,6 @@ UNITS = {
     "rod_diameter": "m",
     "torsional_stiffness": "N m/rad",
     "torsional_damping": "N m s/rad",
-    "limit_torque": "N m",
 }
 """SI unit of each number of `DesignResult.design` and `DesignResult.derived`."""
 
@@ -109,6 +108,8 @@ class DecayCheck:
         Largest ratio by the smooth simulation that the optimiser used.
     simulations : int
         Exact simulations that were made.
+    peaks : dict of str to float
+        Largest magnitudes that they show [SI].
     """
 
     passed: bool
@@ -119,6 +120,7 @@ class DecayCheck:
     ratio: float
     optimised: float
     simulations: int
+    peaks: dict[str, float]
 
 
 class _Record(BaseModel):
@@ -234,7 +236,8 @@ class DesignResult(_Record):
 
     `status`: ``solved`` (and verified), ``infeasible`` (no design meets the requirements) or ``failed`` (the solver or the
     verification did not succeed); `message` says it in words. Design variables and derived numbers are in SI, see `UNITS`.
-    `decided_by` says what the mass hangs on: per cent of mass for one per cent of the limits of each kind of constraint.
+    `limit_event` holds the peaks that size the parts [SI]. `decided_by` says what the mass hangs on: per cent of mass for one
+    per cent of the limits of each kind of constraint.
     """
 
     schema_version: Literal[1] = 1
@@ -247,6 +250,7 @@ class DesignResult(_Record):
     stability_margin: float
     design: dict[str, float] = {}
     derived: dict[str, float] = {}
+    limit_event: dict[str, float] = {}
     mass: MassResult | None = None
     stability: OperatingPoint | None = None
     constraints: tuple[ConstraintResult, ...] = ()

@@ -138,7 +138,7 @@ class _Layouts:
         data, load = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         log_k, log_c = ca.SX.sym("log_k"), ca.SX.sym("log_c")
         mass, rows = problem.mass_and_rows(physical[:-1], physical[-1], data, load)
-        k_psi, c_psi = problem.stiffness_and_damping(physical[:-1], data, load)
+        k_psi, c_psi = problem.stiffness_and_damping(physical[:-1], data)
         nlp = {
             "x": x,
             "p": ca.vertcat(data, load, log_k, log_c),

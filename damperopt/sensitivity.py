@@ -40,28 +40,30 @@ def sensitivities(
     first-order effect; at an end of the range it has, and that is the sensitivity to the end.
     """
     study, points = problem.study, solution.points
-    decay: dict[str, float] = {}  # what moves the active cuts, times their multipliers
-    for cut, multiplier in zip(solution.cuts, solution.cut_multipliers, strict=True):
-        if analysis is None or multiplier <= 1e-7 * solution.objective:
+    simulated: dict[str, float] = {}  # by what moves the active cuts and the peaks, times what these are worth
+    worth = [(cut, 0, m) for cut, m in zip(solution.cuts, solution.cut_multipliers, strict=True)]
+    worth += [(cut, 1 + k, w) for k, (cut, w) in enumerate(zip(solution.peaks, solution.peak_gradient, strict=True))]
+    for cut, row, weight in worth:
+        if analysis is None or abs(weight) <= 1e-7 * solution.objective:
             continue
         for name, slope in analysis.data_gradient(solution.design, cut.speed, cut.load).items():
             for key in _inputs(study, name, cut):
-                decay[key] = decay.get(key, 0.0) + multiplier * slope
+                simulated[key] = simulated.get(key, 0.0) + float(weight * slope[row])
     found = [
-        (name, float(value), unit_of(study, name), float(slope) + decay.get(name, 0.0))
+        (name, float(value), unit_of(study, name), float(slope) + simulated.get(name, 0.0))
         for name, value, slope in zip(problem.data_names, problem.data, solution.data_gradient, strict=True)
     ]
     for end in ("min", "max"):
         speed = getattr(study.envelope.speed, end)
         slope = sum(d for d, point in zip(solution.point_gradient[:, 0], points, strict=True) if point[0] == speed)
         name = f"envelope.speed.{end}"
-        found.append((name, speed, "m/s", float(slope) + decay.get(name, 0.0)))
+        found.append((name, speed, "m/s", float(slope) + simulated.get(name, 0.0)))
     names: Sequence[Any] = ("min", "max") if study.envelope.load_is_range else range(len(study.envelope.loads))
     for name, load in zip(names, study.envelope.loads, strict=True):
         slope = sum(d for d, point in zip(solution.point_gradient[:, 1], points, strict=True) if point[1] == load)
         slope += solution.load_limit_gradient if load == problem.load_limit else 0.0
         single = len(study.envelope.loads) == 1
-        slope += decay.get(f"load {load}", 0.0)
+        slope += simulated.get(f"load {load}", 0.0)
         found.append(("envelope.vertical_load" + ("" if single else f".{name}"), load, "N", float(slope)))
     results = [
         Sensitivity(input=name, value=value, unit=unit, derivative=slope, elasticity=slope * value / solution.objective)

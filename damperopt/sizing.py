@@ -75,6 +75,8 @@ class Requirements(Record):
     """Spectral abscissa <= -stability_margin at every speed and load [1/s]."""
     decay: DecayRequirement | None = None
     """On the nonlinear model, at every speed and load, after a release or a kick."""
+    limit_event: Literal["torque", "simulated"] = "torque"
+    """What the parts must carry: a yaw torque, or the peaks of the motions that the decay requirement looks at."""
     limit_torque: Torque | None = None
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5
@@ -91,6 +93,12 @@ class Requirements(Record):
     """Allowed reach of the apex from the strut axis, L sin(gamma) [m]."""
     tyre_clearance: Distance = 0.05
     """Least height of the apex above the top of the tyre [m]."""
+
+    @model_validator(mode="after")
+    def _motions_to_size_by(self) -> Self:
+        if self.limit_event == "simulated" and self.decay is None:
+            raise refuse("decay", "missing key", "the block decay, whose motions limit_event 'simulated' takes its peaks from")
+        return self
 
 
 class Section(Record):

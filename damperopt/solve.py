@@ -54,6 +54,10 @@ class LocalSolution:
         Decay cuts of the solution.
     cut_multipliers : ndarray
         (m,) of the decay cuts.
+    peaks : tuple of Cut
+        Models of simulated peaks, and
+    peak_gradient : ndarray
+        (k,) derivative of the optimal objective with respect to the logarithm of each.
     data_gradient : ndarray
         Derivative of the optimal objective with respect to the study's numbers, by the envelope theorem (its Lagrangian's).
     load_limit_gradient : float
@@ -79,6 +83,8 @@ class LocalSolution:
     bound_multipliers: np.ndarray
     cuts: tuple[Cut, ...]
     cut_multipliers: np.ndarray
+    peaks: tuple[Cut, ...]
+    peak_gradient: np.ndarray
     data_gradient: np.ndarray
     load_limit_gradient: float
     point_gradient: np.ndarray
@@ -120,6 +126,7 @@ class NlpSolver:
         points: Sequence[tuple[float, float]],
         form: type[Program] = HurwitzProgram,
         cuts: Sequence[Cut] = (),
+        peaks: Sequence[Cut] = (),
         **options: Any,
     ) -> LocalSolution:
         """Local solution from `design` with stability imposed at `points` and decay by `cuts`.
@@ -132,6 +139,8 @@ class NlpSolver:
         form : type
             Program class.
         cuts : sequence of Cut
+        peaks : sequence of Cut
+            Simulated peaks that size the parts; none: as estimated.
         **options : object
             Passed to `Program.instance`.
 
@@ -140,14 +149,16 @@ class NlpSolver:
         LocalSolution
         """
         built = self._program(form, len(points))
-        it = built.program.instance(design, points, cuts=cuts, **options)
+        it = built.program.instance(design, points, cuts=cuts, peaks=peaks, **options)
         result = built.solver(x0=it.x0, p=it.p, lbx=it.lbx, ubx=it.ubx, lbg=it.lbg, ubg=it.ubg)
         stats = built.solver.stats()
         raise_if_interrupted(stats)
         x, g, lam_g, lam_x = (result[key].full().ravel() for key in ("x", "g", "lam_g", "lam_x"))
         rows = len(self.problem.constraints)
         variables, data = len(self.problem.variables), len(self.problem.data)
-        # parameters: data, load limit, speeds and loads of the slots, scales (see Program)
+        # parameters: data, load limit, speeds, loads and rates of the slots; with simulated peaks a switch and their models,
+        # of which the value comes first (see Program)
+        n = len(self.problem.design_names)
         by_parameter = built.parameter_gradient(x, it.p, lam_g).full().ravel()
         violation = max(np.max(g - it.ubg), np.max(it.lbg - g), 0.0)
         return LocalSolution(
@@ -161,6 +172,8 @@ class NlpSolver:
             bound_multipliers=lam_x[:variables],
             cuts=tuple(cuts),
             cut_multipliers=lam_g[rows : rows + len(cuts)],
+            peaks=tuple(peaks),
+            peak_gradient=by_parameter[data + 1 + 3 * built.slots + 1 :][:: 1 + n + n * n][: len(peaks)],
             data_gradient=by_parameter[:data],
             load_limit_gradient=float(by_parameter[data]),
             point_gradient=by_parameter[data + 1 : data + 1 + 2 * built.slots].reshape(2, -1)[:, : len(points)].T,

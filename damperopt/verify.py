@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from .decay import latest_count, loads_of
+from .decay import PEAKS, latest_count, loads_of
 from .events import ExactSimulator
 from .results import DecayCheck, OperatingPoint
 from .specs import Study
 from .stability import linear_gear
-from .trajectory import decay
+from .trajectory import Trajectory, decay
 
 __all__ = ["GridCheck", "check_decay", "check_grid"]
 
@@ -96,10 +96,15 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
     assert required is not None
     simulator, made = ExactSimulator(study, design), 0
 
+    peaks = dict.fromkeys(PEAKS, 0.0)
+
     def ratio(speed: float, load: float) -> float:
         nonlocal made
         made += 1
-        return _exact_ratio(simulator, speed, load)
+        found, motion = _exact_ratio(simulator, speed, load)
+        for name in PEAKS:
+            peaks[name] = max(peaks[name], float(np.abs(motion[name]).max()))
+        return found
 
     low, high = envelope.speed.min, envelope.speed.max
     if required.speeds is not None:
@@ -116,11 +121,12 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
             lambda V: -ratio(float(V), load), bounds=bounds, method="bounded", options={"xatol": 1e-4 * high, "maxiter": 8}
         )
         speed, largest = max((speed, largest), (float(best.x), -float(best.fun)), key=lambda pair: pair[1])
-    return DecayCheck(largest <= required.ratio, required.ratio, required.cycles, speed, load, largest, largest, made)
+    kept = largest <= required.ratio
+    return DecayCheck(kept, required.ratio, required.cycles, speed, load, largest, largest, made, peaks)
 
 
-def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> float:
-    """Decay ratio at one speed and load; infinite where the motion leaves the validity of the model."""
+def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[float, Trajectory]:
+    """Decay ratio at one speed and load, infinite where the motion leaves the validity of the model, and the motion."""
     required = simulator.study.required.decay
     assert required is not None
     A = simulator.gear.matrices(speed, load)[0]
@@ -132,8 +138,8 @@ def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> float:
         points = math.ceil(duration * max(rates.max(), 20.0) / (2 * math.pi) * PER_CYCLE)
         motion = simulator(speed, load, required.disturbance, duration, TOLERANCE, points)
         if motion.status == "stopped":
-            return math.inf
+            return math.inf, motion
         found = decay(motion.time, motion["yaw_angle"], motion["yaw_rate"], required.cycles, latest)
         if found is not None:
-            return found.ratio
+            return found.ratio, motion
         duration *= 2

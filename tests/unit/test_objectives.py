@@ -116,7 +116,7 @@ def test_laminate_is_sized_by_strain_and_given_torque_replaces_the_derived_one(m
     study = main_gear.replace(material="CFRP UD", requirements__limit_torque=10e3)
     problem = damperopt.DesignProblem(study)
     design = study.start
-    assert problem.yaw_numbers(design)["limit_torque"] == 10e3
+    assert problem.limit_event(design)["linkage_torque"] == 10e3
     assert problem.values(design)["arm_stress"][1] == pytest.approx(140e9 * 0.0045)
     assert "arm_fatigue" not in problem.values(design)  # no Basquin data
 

@@ -9,16 +9,16 @@ from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
-from .dae import DAE, eliminate
+from .dae import DAE
 from .dynamics import build
 from .elements import Smooth
-from .integrators import NEWTON_STEPS, Integrator, Solution, best_engine
+from .integrators import Integrator, best_engine
 from .specs import Study
 from .stability import LinearModel
 from .symbols import data_values, symbolic
+from .tangent import TangentMotion, output_functions, weights_at_peak
 from .trajectory import Decay, decay
 
 __all__ = ["PEAKS", "DecayAnalysis", "DecayPoint", "decay_analysis", "latest_count", "loads_of"]
@@ -88,7 +88,7 @@ class DecayAnalysis:
         self._data = np.array(data_values(study))
         self._design: tuple[float, ...] = ()
         self._known: dict[tuple[float, float, bool], DecayPoint] = {}
-        self._outputs, self._output_slopes = _output_functions(self._dae)
+        self._outputs, self._output_slopes = output_functions(self._dae, PEAKS)
         slopes = ca.jacobian(ca.vertcat(self._dae.ode, self._dae.alg), self._dae.data)
         self._moving = ca.DM(slopes.sparsity(), 1).full().any(axis=0)
         self._disturbance = f"requirements.decay.{'release' if self.requirement.release else 'kick'}"
@@ -168,13 +168,13 @@ class DecayAnalysis:
         latest: float,
         gradient: bool,
         data: np.ndarray,
-    ) -> tuple[_Motion, Decay | None]:
+    ) -> tuple[TangentMotion, Decay | None]:
         """The motion until its decay is decided; no decay where it diverges."""
         integrator = self._with_sensitivities if gradient else self._plain
         required, start = self.requirement, dict(zip(self._dae.data_names, data, strict=True))
         x0 = np.array([start.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
         stretch = STRETCH_CYCLES * 2 * math.pi / max(np.abs(np.linalg.eigvals(A).imag).max(), 20.0)
-        motion = _Motion(np.zeros(1), x0[:, None], np.zeros((x0.size, len(values) if gradient else 0, 1)))
+        motion = TangentMotion(np.zeros(1), x0[:, None], np.zeros((x0.size, len(values) if gradient else 0, 1)))
         for stretches in range(1, MAX_STRETCHES + 1):
             x, S, t = motion.x[:, -1], motion.S[:, :, -1] if gradient else None, motion.time[-1]
             try:
@@ -196,7 +196,7 @@ class DecayAnalysis:
         return motion, decay(motion.time, motion.x[0], motion.x[1], required.cycles, 0.9 * motion.time[-1])
 
     def _peaks_of(
-        self, motion: _Motion, values: list[float], speed: float, load: float, gradient: bool, data: np.ndarray
+        self, motion: TangentMotion, values: list[float], speed: float, load: float, gradient: bool, data: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Largest magnitudes of `PEAKS`, and their derivatives to ln(design variables); empty unless they size the parts."""
         if self.study.required.limit_event != "simulated":
@@ -208,7 +208,7 @@ class DecayAnalysis:
         for k, row in enumerate(found):
             top = int(np.abs(row).argmax())
             near = slice(min(max(top - 2, 0), m - 5), min(max(top - 2, 0), m - 5) + 5)
-            weights = np.eye(5)[top - near.start] if top == 0 else _weights_at_peak(np.abs(row[near]))
+            weights = np.eye(5)[top - near.start] if top == 0 else weights_at_peak(np.abs(row[near]))
             peaks[k] = np.abs(row[near]) @ weights
             if gradient:
                 rows = [
@@ -367,57 +367,3 @@ def loads_of(study: Study) -> tuple[float, ...]:
     if not envelope.load_is_range:
         return envelope.loads
     return tuple(np.linspace(envelope.loads[0], envelope.loads[1], 5).tolist())
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """States (n, m) and their sensitivities to ln(design variables) (n, d, m) at m times."""
-
-    time: np.ndarray
-    x: np.ndarray
-    S: np.ndarray
-
-    def with_more(self, start: float, duration: float, found: Solution) -> _Motion:
-        """With a stretch that begins where this ends."""
-        time = start + np.linspace(0, duration, found.x.shape[1])[1:]
-        return _Motion(
-            np.append(self.time, time),
-            np.hstack([self.x, found.x[:, 1:]]),
-            np.concatenate([self.S, found.sensitivities[:, :, 1:]], axis=2),
-        )
-
-    def log_slopes(self, moment: float) -> np.ndarray:
-        """d ln|yaw|/d ln(design variable) at a time."""
-        i = min(max(int(np.searchsorted(self.time, moment)) - 1, 0), self.time.size - 2)
-        pair = slice(i, i + 2)
-        values, rates = (np.vstack([self.x[k, pair], self.S[k, :, pair].reshape(-1, 2)]) for k in (0, 1))
-        near = CubicHermiteSpline(self.time[pair], values, rates, axis=1)(moment)
-        return near[1:] / near[0]
-
-    def log_rate(self, moment: float) -> float:
-        """d ln|yaw|/dt [1/s]."""
-        spline = CubicHermiteSpline(self.time, self.x[0], self.x[1])
-        return float(spline(moment, 1) / spline(moment))
-
-
-def _output_functions(dae: DAE) -> tuple[ca.Function, ca.Function]:
-    """`PEAKS` of a state, and their derivatives to ln(design variables) given the sensitivities of the state."""
-    model = eliminate(dae, NEWTON_STEPS)
-    outputs = ca.vertcat(*(model.x[0] if name == "yaw_angle" else model.outputs[name] for name in PEAKS))
-    outputs = ca.substitute(outputs, model.yaw_torque, 0)
-    inputs = [model.design, model.speed, model.load, model.data]
-    S = ca.SX.sym("S", model.x.numel(), model.design.numel())
-    slopes = ca.jacobian(outputs, model.x) @ S + ca.jacobian(outputs, model.design) @ ca.diag(model.design)
-    return (
-        ca.Function("outputs", [model.x, *inputs], [outputs]),
-        ca.Function("output_slopes", [model.x, S, *inputs], [ca.densify(slopes)]),
-    )
-
-
-def _weights_at_peak(values: np.ndarray) -> np.ndarray:
-    """Weights of five even samples that interpolate where their parabola through the three highest peaks."""
-    nodes, top = np.arange(5.0), int(np.clip(values.argmax(), 1, 3))
-    left, middle, right = values[top - 1 : top + 2]
-    bend = left - 2 * middle + right
-    u = top + (0.5 * (left - right) / bend if bend else 0.0)
-    return np.array([np.prod((u - np.delete(nodes, i)) / (nodes[i] - np.delete(nodes, i))) for i in range(5)])

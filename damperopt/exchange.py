@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from .cuts import Cut
 from .decay import DecayPoint
 from .problem import DesignProblem
-from .program import CUTS, Cut, FactorProgram, HurwitzProgram, Program
+from .program import CUTS, FactorProgram, HurwitzProgram, Program
 from .results import OperatingPoint
 from .screening import linear_decay
 from .solve import LocalSolution, NlpSolver

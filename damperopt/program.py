@@ -27,13 +27,13 @@ from typing import Any, ClassVar, Protocol
 import casadi as ca
 import numpy as np
 
+from .cuts import Cut
 from .decay import PEAKS
 from .hurwitz import characteristic_polynomial, lienard_chipart
 from .problem import ESTIMATED, DesignProblem
 
 __all__ = [
     "CUTS",
-    "Cut",
     "ElasticFactorProgram",
     "ElasticHurwitzProgram",
     "FactorProgram",
@@ -53,40 +53,6 @@ NEVER = -1e3
 
 EXCESS_PRICE = 1e3
 """kg per unit of ln(decay ratio) by which cuts may be exceeded: far above any multiplier, so that it is 0 where it can be."""
-
-
-@dataclass(frozen=True)
-class Cut:
-    """ln(decay ratio), or ln(peak), at one speed and load about one design.
-
-    Attributes
-    ----------
-    speed, load : float
-        [m/s], [N]
-    value : float
-        At the centre.
-    gradient, centre : ndarray
-        (n,) with respect to the scaled design variables, and where it was taken.
-    curvature : ndarray
-        (n, n) approximate second derivatives.
-    """
-
-    speed: float
-    load: float
-    value: float
-    gradient: np.ndarray
-    centre: np.ndarray
-    curvature: np.ndarray
-
-    def at(self, x: np.ndarray) -> float:
-        """Its value at scaled design variables."""
-        step = x - self.centre
-        return float(self.value + self.gradient @ step + step @ self.curvature @ step / 2)
-
-    def about_zero(self) -> np.ndarray:
-        """Value, gradient and curvature of the same function at x = 0, in one vector."""
-        linear = self.gradient - self.curvature @ self.centre
-        return np.concatenate([[self.at(0 * self.centre)], linear, self.curvature.ravel()])
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .problem import DesignProblem
-from .screening import least_conditions
+from .screening import least_conditions, linear_decay, worst_abscissae_of
 from .specs import Study
 
 __all__ = ["FeasibleRegion", "feasible_region"]
@@ -50,7 +50,7 @@ class FeasibleRegion:
 
 
 def feasible_region(
-    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 181
+    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 121
 ) -> FeasibleRegion:
     """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
 
@@ -67,7 +67,7 @@ def feasible_region(
     Returns
     -------
     FeasibleRegion
-        A picture, not a proof: stability is looked at on a few speeds.
+        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear without compliances.
     """
     problem = DesignProblem(study)
     names = problem.design_names
@@ -76,7 +76,16 @@ def feasible_region(
     X, Y = np.meshgrid(x, y)
     designs = np.tile([design[name] for name in names], (X.size, 1))
     designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
-    found = problem.over_designs(designs)
-    stability = least_conditions(study, found["torsional_stiffness"], found["torsional_damping"], worst)
+    found = problem.over_designs(designs, problem.factors(design))
+    k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
+    if study.damper.link_stiffness is None and study.damper.series_stiffness is None:
+        stability = least_conditions(study, k_psi, c_psi, worst)
+    else:
+        stability = -study.required.stability_margin - worst_abscissae_of(study, designs, worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
+    decay = study.required.decay
+    if decay is not None:
+        ratio = np.full(X.size, np.inf)
+        ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0])
+        rows["decay_ratio"] = np.log(ratio / decay.ratio).reshape(X.shape)
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))

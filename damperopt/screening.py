@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import casadi as ca
 import numpy as np
 
 from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .specs import Damper, Study
-from .stability import linear_gear, spectral_abscissa
+from .stability import LinearModel, linear_gear, spectral_abscissa
+from .symbols import data_values
 
-__all__ = ["least_conditions", "linear_decay", "worst_abscissae"]
+__all__ = ["least_conditions", "linear_decay", "worst_abscissae", "worst_abscissae_of"]
 
 SPEEDS = 24
 DECAY_SPEEDS, PER_CYCLE = 5, 14  # a look at decay, to choose starts
@@ -72,6 +74,30 @@ def worst_abscissae(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.nd
         A = base[j] + np.multiply.outer(k_psi / STIFFNESS, per_k[j] - base[j])
         A += np.multiply.outer(c_psi / DAMPING, per_c[j] - base[j])
         worst = np.maximum(worst, spectral_abscissa(A))
+    return worst
+
+
+def worst_abscissae_of(study: Study, designs: np.ndarray, more: Sequence[tuple[float, float]] = ()) -> np.ndarray:
+    """Largest spectral abscissa of designs over a few points of the envelope, for models of any kind.
+
+    Parameters
+    ----------
+    study : Study
+    designs : ndarray
+        (m, n) design variables [SI].
+    more : sequence of (speed, load)
+        Points to look at besides a few speeds at each load [m/s], [N].
+
+    Returns
+    -------
+    ndarray
+        (m,) [1/s]
+    """
+    model, worst = LinearModel(study), np.full(len(designs), -np.inf)
+    n, data = len(model.state_names), ca.repmat(ca.DM(data_values(study)), 1, len(designs))
+    for V, F_z in zip(*_points(study, SPEEDS // 3, more), strict=True):
+        A = model.state_matrix(designs.T, float(V), float(F_z), data).full().reshape(n, len(designs), n)
+        worst = np.maximum(worst, spectral_abscissa(A.transpose(1, 0, 2)))
     return worst
 
 

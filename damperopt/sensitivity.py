@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from .cuts import Cut
 from .decay import DecayAnalysis
 from .problem import DesignProblem
-from .program import Cut
 from .results import Sensitivity
 from .solve import LocalSolution
 from .specs import Study, unit_of

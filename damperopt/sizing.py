@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from .disturbances import Disturbance, Kick, Release
 from .materials import Material
@@ -36,6 +36,21 @@ def _fraction(found: Any) -> Any:
     return found
 
 
+_Ratio = Annotated[
+    float,
+    Quantity("1", above=0, below=1, example="1/3"),
+    BeforeValidator(_fraction),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+                {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*0*[1-9][0-9]*\s*$"},
+            ]
+        }
+    ),
+]
+
+
 class Fatigue(Record):
     """Fatigue life of the bending arm: `cycles` at `stress_fraction` of the limit-event stress (Basquin)."""
 
@@ -46,7 +61,7 @@ class Fatigue(Record):
 class DecayRequirement(Record):
     """|yaw| <= `ratio` times its first extremum at all times after `cycles` cycles that follow a disturbance."""
 
-    ratio: Annotated[float, Quantity("1", above=0, below=1, example="1/3"), BeforeValidator(_fraction)] = 1 / 3
+    ratio: _Ratio = 1 / 3
     cycles: Annotated[int, Field(ge=1, le=100)] = 3
     release: Release | None = None
     kick: Kick | None = None

@@ -10,9 +10,10 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
+from .cuts import Cut
 from .decay import DecayAnalysis, decay_analysis
 from .problem import DesignProblem
-from .program import Cut, HurwitzProgram, Instance, Program
+from .program import HurwitzProgram, Instance, Program
 
 __all__ = ["LocalSolution", "NlpSolver", "raise_if_interrupted"]
 

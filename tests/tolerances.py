@@ -93,3 +93,16 @@ SAME_CYCLE = 1e-3
 
 GAP_PROPORTION = 2e-3
 """Relative; cubes of yaw angles up to 4 mrad and of the slip, to which a limit cycle near neutral stability is sensitive."""
+
+MIDDLE_OF_EXTREMA = 0.05
+"""Relative; second-order perturbation of a limit cycle of 0.2 to 0.26 rad whose restoring torque is the arm's but for a few
+per cent (measured: +1.5 to +2 %)."""
+
+SECOND_HARMONIC = 0.05
+"""Relative; first-order perturbation by a damper whose torque is a fraction of the inertia's (measured: 1.4 %)."""
+
+SAMPLED_HARMONIC = 5e-5
+"""Of the first harmonic; harmonics of a motion by a cubic through 40 samples a cycle (measured: 1.2e-5 where it is odd)."""
+
+SAME_CYCLE_FROM_WITHOUT = 0.01
+"""Relative; amplitudes of one limit cycle reached from within and from without, at growth rates near 0.1 1/s."""

@@ -10,14 +10,19 @@
 from .certify import certify
 from .config import json_schema, load, loads
 from .critical import critical_speeds
+from .decay import DecayAnalysis
 from .design import combinations, optimise, optimise_each, rank
+from .disturbances import Disturbance
 from .errors import CertificateError, ConfigError, DamperoptError, OutputError
+from .events import ExactSimulator, simulate_exactly
 from .modes import ModeTable, track_modes
 from .problem import DesignProblem
 from .results import Certificate, DesignResult, load_result
+from .simulate import Simulator, simulate
 from .specs import Study
 from .stability import LinearGear, linear_gear, spectral_abscissa
-from .verify import GridCheck, check_grid
+from .trajectory import Motion, Trajectory, motion_of
+from .verify import GridCheck, check_decay, check_grid
 from .worst import worst_points
 
 __all__ = [
@@ -25,14 +30,21 @@ __all__ = [
     "CertificateError",
     "ConfigError",
     "DamperoptError",
+    "DecayAnalysis",
     "DesignProblem",
     "DesignResult",
+    "Disturbance",
+    "ExactSimulator",
     "GridCheck",
     "LinearGear",
     "ModeTable",
+    "Motion",
     "OutputError",
+    "Simulator",
     "Study",
+    "Trajectory",
     "certify",
+    "check_decay",
     "check_grid",
     "combinations",
     "critical_speeds",
@@ -41,9 +53,12 @@ __all__ = [
     "load",
     "load_result",
     "loads",
+    "motion_of",
     "optimise",
     "optimise_each",
     "rank",
+    "simulate",
+    "simulate_exactly",
     "spectral_abscissa",
     "track_modes",
     "worst_points",

@@ -151,7 +151,7 @@ def analyse(
     design: Annotated[
         Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
     ] = None,
-    speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table [m/s]. [default: envelope]")] = "",
+    speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table in m/s. [default: envelope]")] = "",
     output: OutputOption = None,
 ) -> None:
     """Modes over speed, critical speeds and the exact certificate of a given design."""
@@ -193,7 +193,7 @@ def analyse(
 @app.command()
 def simulate(
     file: ConfigArgument,
-    speed: Annotated[str, typer.Option(help="Speed, such as 40 or '120 kt' [m/s].")],
+    speed: Annotated[str, typer.Option(help="Speed in m/s, such as 40, or '120 kt'.")],
     design: Annotated[
         Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
     ] = None,
@@ -202,7 +202,7 @@ def simulate(
     kick: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw or bending rate at the start.")] = None,
     step: Annotated[list[str] | None, typer.Option(metavar="torque=VALUE", help="Yaw torque from the start.")] = None,
     unbalance: Annotated[list[str] | None, typer.Option(metavar="moment=VALUE", help="Rotating unbalance.")] = None,
-    duration: Annotated[str, typer.Option(help="Time to simulate [s].")] = "3",
+    duration: Annotated[str, typer.Option(help="Time to simulate in s.")] = "3",
     engine: Annotated[str, typer.Option(help=f"{', '.join(ENGINES)}, exact (corners as events), or auto.")] = "auto",
     output: OutputOption = None,
 ) -> None:

@@ -112,7 +112,7 @@ class Integrator:
         )
         x, z, ode, alg = _with_sensitivities(model) if self._d else (model.x, model.z, model.ode, model.alg)
         problem = {"x": x, "p": parameters, "t": time}
-        problem["ode"] = duration * ca.substitute(ode, model.yaw_torque, external)
+        problem["ode"] = ca.cse(duration * ca.substitute(ode, model.yaw_torque, external))
         if self._m:
             problem |= {"z": z, "alg": alg}
             self._guess = ca.Function("guess", [model.x, parameters], [model.first_guess()])
@@ -217,7 +217,7 @@ def _options(engine: str, tolerance: float) -> dict[str, Any]:
 
 def _create(engine: str, problem: dict[str, ca.SX], grid: list[float], options: dict[str, Any], compiled: bool) -> ca.Function:
     if compiled:
-        files = {"cleanup": False, "flags": ["-O2"], "verbose": False}  # removed with their folder
+        files = {"cleanup": False, "flags": ["-O3", "-march=native"], "verbose": False}  # removed with their folder
         jit = {"jit": True, "jit_cleanup": False, "compiler": "shell", "jit_options": files}
         try:
             with tempfile.TemporaryDirectory(prefix="damperopt-") as folder, contextlib.chdir(folder):

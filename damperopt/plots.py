@@ -36,7 +36,7 @@ SYMBOLS = {
     "I_arm": r"Second moment of area of the arm $I_\mathrm{arm}$",
 }
 LIMITS = {
-    "decay_ratio": ("decay", "#a1203d", "-"),
+    "decay_ratio": ("decay", "#00798c", "-"),
     "arm_stress": ("arm stress", "#333333", "--"),
     "arm_fatigue": ("arm fatigue", "#7a5195", ":"),
     "working_stroke": ("working stroke", "#2f6b3a", "-."),

@@ -14,6 +14,9 @@ from .specs import Study
 __all__ = ["FeasibleRegion", "feasible_region"]
 
 
+PER_CYCLE = 64  # times in a cycle of the slowest mode: a yaw mode of four times its frequency is still a curve
+
+
 @dataclass(frozen=True)
 class FeasibleRegion:
     """Maps over a plane of two design variables.
@@ -50,7 +53,7 @@ class FeasibleRegion:
 
 
 def feasible_region(
-    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 121
+    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 101
 ) -> FeasibleRegion:
     """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
 
@@ -86,6 +89,6 @@ def feasible_region(
     decay = study.required.decay
     if decay is not None:
         ratio = np.full(X.size, np.inf)
-        ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0])
+        ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
         rows["decay_ratio"] = np.log(ratio / decay.ratio).reshape(X.shape)
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))

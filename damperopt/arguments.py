@@ -81,7 +81,10 @@ def disturbance_of(given: Mapping[str, Sequence[str]]) -> Disturbance:
             name, equals, value = (piece.strip() for piece in part.partition("="))
             if not equals:
                 raise ConfigError(f"--{kind}: found '{part}'; allowed: name=value, such as {_example(kind)}")
-            blocks.setdefault(kind, {})[_SHORT[kind].get(name, name)] = _number_or_text(value)
+            block, key = blocks.setdefault(kind, {}), _SHORT[kind].get(name, name)
+            if key in block:
+                raise ConfigError(f"--{kind}: names '{name}' twice; allowed: each once")
+            block[key] = _number_or_text(value)
     try:
         return Disturbance.model_validate(blocks)
     except ValidationError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -59,8 +60,18 @@ OutputOption = Annotated[
 ]
 
 
+_interrupts: list[int] = []
+"""Ctrl-C that was pressed: now and then a library swallows the exception, and its answer must not pass for a whole one."""
+
+
+def _interrupt(number: int, frame: Any) -> None:
+    _interrupts.append(number)
+    raise KeyboardInterrupt
+
+
 def main() -> None:
     """Entry point of the command ``damperopt``."""
+    signal.signal(signal.SIGINT, _interrupt)
     try:
         app()
     except DamperoptError as error:
@@ -159,12 +170,6 @@ def analyse(
     values = None
     if design is not None:
         study, values = _with_design(study, load_result(design), file, design)
-        out.print(
-            f"Layout ({study.damper.topology}, {study.damper.geometry}) and material ({study.material.name}) are those of "
-            f"{design}; all else is that of {file}.",
-            soft_wrap=True,
-            markup=False,
-        )
     grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)
@@ -225,8 +230,15 @@ def simulate(
     at_speed, at_load = quantity(speed, Speed, "--speed"), quantity(load, Force, "--load") if load else None
     seconds = quantity(duration, Time, "--duration")
     folder = run_folder(output, f"{file.stem}-simulation")
+    if engine not in ("auto", "exact", *ENGINES):
+        raise ConfigError(f"--engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
     run = ExactSimulator(study, values) if engine == "exact" else Simulator(study, values, engine)
-    motion = run(at_speed, at_load, disturbance, seconds)
+    try:
+        motion = run(at_speed, at_load, disturbance, seconds)
+    except KeyboardInterrupt:
+        raise Interrupted("interrupted; nothing was written") from None
+    if _interrupts:
+        raise Interrupted("interrupted; nothing was written")
     found = motion_of(motion, required.cycles if required else 3)
 
     def write(place: Path) -> None:
@@ -339,6 +351,12 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
         "damper__geometry": result.geometry,
         "material": result.config.get("material", study.material.name),
     }
+    out.print(
+        f"Layout ({result.topology}, {result.geometry}) and material ({result.material}) are those of {source}; "
+        f"all else is that of {file}.",
+        soft_wrap=True,
+        markup=False,
+    )
     try:
         return study.replace(**changes), result.design
     except ConfigError as error:

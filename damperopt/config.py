@@ -102,6 +102,8 @@ def loads(text: str, name: str = "<text>") -> Study:
     finally:
         if loader is not None:
             loader.dispose()
+    if empty := _empty(root, (), name):
+        raise ConfigError(empty)
     try:
         return Study.model_validate(data)
     except ValidationError as error:
@@ -135,6 +137,20 @@ def _index(node: yaml.Node, path: tuple, lines: dict[tuple, int], name: str) -> 
         for position, item in enumerate(node.value):
             problems += _index(item, (*path, position), lines, name)
     return problems
+
+
+def _empty(node: yaml.Node, path: tuple, name: str) -> list[str]:
+    """Messages about keys with nothing behind them: an empty block would drop a requirement without a word."""
+    if isinstance(node, yaml.MappingNode):
+        items = [(key.value, value) for key, value in node.value]
+    elif isinstance(node, yaml.SequenceNode):
+        items = list(enumerate(node.value))
+    else:
+        if node.tag != "tag:yaml.org,2002:null":
+            return []
+        allowed = _allowed_at(path)
+        return [f"{name}:{node.start_mark.line + 1}: {_dotted(path)}: found nothing; allowed: {allowed}; or leave the key out"]
+    return [text for key, value in items for text in _empty(value, (*path, key), name)]
 
 
 def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str) -> tuple[int, str]:
@@ -182,6 +198,8 @@ def _what(problem: Any, path: tuple) -> str:
         return f"{'missing' if kind.endswith('found') else repr(context.get('tag'))} tyre law; allowed: law: {tags}"
     if kind.startswith("model_") or kind in ("dict_type", "model_type"):
         return f"found {found!r} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path))}"
+    if kind == "list_type":
+        return f"found {found!r} instead of a list; allowed: a list of items, each {_allowed_at(path)}"
     return f"found {found!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path)}"
 
 
@@ -225,6 +243,11 @@ def _allowed_at(path: tuple) -> str:
         quantity = quantity_of(field.annotation, field.metadata)
         if quantity:
             return quantity.describe()
+    for field in _fields_at(path):
+        limits = {k: v for m in field.metadata for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
+        if limits:
+            words = [f"{sign} {limits[k]}" for k, sign in (("ge", ">="), ("le", "<=")) if k in limits]
+            return f"a whole number, {' and '.join(words)}"
     keys = _keys_at(path)
     return f"a mapping with the keys {', '.join(keys)}" if keys else "see 'damperopt init' for an example"
 

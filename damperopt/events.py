@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from .disturbances import Disturbance
 from .dynamics import build
 from .elements import Switched
-from .simulate import posed, refuse_start, valid_part
+from .simulate import output_points, posed, refuse_start, valid_part
 from .specs import Study
 from .stability import linear_gear
 from .symbols import data_values, symbolic
@@ -27,6 +27,8 @@ from .trajectory import Trajectory
 __all__ = ["ExactSimulator", "simulate_exactly"]
 
 MAX_EVENTS = 100_000
+
+FEWEST_POINTS = 2000
 
 NEWTON_TOLERANCE = 1e-14
 """Step of the algebraic unknowns [m, rad] at which the linkage counts as closed."""
@@ -49,7 +51,7 @@ def simulate_exactly(
     disturbance: Disturbance | Mapping[str, Any],
     duration: float = 3.0,
     tolerance: float = 1e-10,
-    points: int = 2000,
+    points: int | None = None,
 ) -> Trajectory:
     """Motion after a disturbance, with the corners of freeplay, stops, friction and slip limit as events.
 
@@ -67,8 +69,8 @@ def simulate_exactly(
         [s]
     tolerance : float
         Relative, of SciPy's DOP853; absolute 1/1000 of it.
-    points : int
-        Output points, evenly spaced.
+    points : int or None
+        Output points, evenly spaced; None: enough for every cycle of the fastest mode.
 
     Returns
     -------
@@ -123,12 +125,13 @@ class ExactSimulator:
         disturbance: Disturbance | Mapping[str, Any],
         duration: float,
         tolerance: float = 1e-10,
-        points: int = 2000,
+        points: int | None = None,
     ) -> Trajectory:
         """Motion at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate_exactly`."""
         load = max(self.study.envelope.loads) if load is None else load
         disturbance = posed(self.study, self.state_names, speed, load, disturbance, duration)
-        time = np.linspace(0, duration, points)
+        enough = output_points(self.gear, speed, load, duration)
+        time = np.linspace(0, duration, max(enough + 1, FEWEST_POINTS) if points is None else points)
         rows, message = _Run(self, speed, load, disturbance, tolerance).rows_at(time)
         values = np.vstack([np.array(rows).T, np.zeros(len(rows))])
         names = (*self.names, "unclosed")  # the unknowns solve the equations, or the run stops

@@ -177,6 +177,8 @@ class Integrator:
             arguments["z0"] = z0
         try:
             result = self._function(**arguments)
+        except NotImplementedError as error:  # a Ctrl-C while CasADi looks for the overload of a call
+            raise KeyboardInterrupt from error
         except RuntimeError as error:
             raise FloatingPointError(f"{self.engine} cannot go on") from error
         columns = result["xf"].full()

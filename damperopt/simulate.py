@@ -17,11 +17,11 @@ from .elements import Smooth
 from .errors import ConfigError
 from .integrators import ENGINES, NEWTON_STEPS, Integrator, best_engine
 from .specs import Study
-from .stability import linear_gear
+from .stability import LinearGear, linear_gear
 from .symbols import data_values, symbolic
 from .trajectory import Trajectory
 
-__all__ = ["Outputs", "Simulator", "posed", "refuse_start", "simulate", "valid_part"]
+__all__ = ["Outputs", "Simulator", "output_points", "posed", "refuse_start", "simulate", "valid_part"]
 
 STEPS = 256
 """Output steps of one stretch; validity is checked after each stretch."""
@@ -124,10 +124,7 @@ class Simulator:
         """Motion at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate`."""
         load = max(self.study.envelope.loads) if load is None else load
         disturbance = posed(self.study, self._state_names, speed, load, disturbance, duration)
-        stretches = math.ceil(duration / (STEPS * self._step(speed, load)))
-        if stretches * STEPS > MAX_POINTS:
-            longest = MAX_POINTS * self._step(speed, load)
-            raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")
+        stretches = math.ceil(output_points(self._gear, speed, load, duration) / STEPS)
         stretch, rate = duration / stretches, speed / self.study.gear.wheel_radius
         torque, unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
         x = np.array(disturbance.start(self._state_names))[:, None]
@@ -155,10 +152,21 @@ class Simulator:
             message = f"{message} after {time[-1]:.4g} s"
         return Trajectory(speed, load, time, kept_states, named, "stopped" if message else "completed", message, self.engine)
 
-    def _step(self, speed: float, load: float) -> float:
-        """Output step [s]: a fraction of a cycle of the fastest mode."""
-        fastest = np.abs(np.linalg.eigvals(self._gear.matrices(speed, load)[0]).imag).max()
-        return 2 * math.pi / max(fastest, 20.0) / PER_CYCLE
+
+def output_points(gear: LinearGear, speed: float, load: float, duration: float) -> int:
+    """Output points that show every cycle of the fastest mode.
+
+    Raises
+    ------
+    ConfigError
+        If they would be too many.
+    """
+    fastest = np.abs(np.linalg.eigvals(gear.matrices(speed, load)[0]).imag).max()
+    step = 2 * math.pi / max(fastest, 20.0) / PER_CYCLE
+    if duration > MAX_POINTS * step:
+        longest = MAX_POINTS * step
+        raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")
+    return math.ceil(duration / step)
 
 
 class Outputs:

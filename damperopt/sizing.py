@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fractions
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
@@ -30,10 +31,12 @@ __all__ = ["DecayRequirement", "Fatigue", "MassModel", "Requirements", "Section"
 
 def _fraction(found: Any) -> Any:
     """1/3 as a number; everything else as it is."""
-    parts = found.split("/") if isinstance(found, str) else ()
-    if len(parts) == 2 and all(part.strip().isdigit() for part in parts) and int(parts[1]):
-        return int(parts[0]) / int(parts[1])
-    return found
+    if not isinstance(found, str) or "/" not in found:
+        return found
+    try:
+        return float(fractions.Fraction(found.replace(" ", "")))
+    except (ValueError, ZeroDivisionError):
+        raise refuse("", f"'{found}' is no fraction", "a number such as 0.3, or a fraction such as 1/3") from None
 
 
 _Ratio = Annotated[
@@ -62,7 +65,7 @@ class DecayRequirement(Record):
     """|yaw| <= `ratio` times its first extremum at all times after `cycles` cycles that follow a disturbance."""
 
     ratio: _Ratio = 1 / 3
-    cycles: Annotated[int, Field(ge=1, le=100)] = 3
+    cycles: Annotated[int, Field(strict=True, ge=1, le=100)] = 3
     release: Release | None = None
     kick: Kick | None = None
     speeds: list[Speed] | None = None

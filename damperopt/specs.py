@@ -21,8 +21,8 @@ from .records import (
     Length,
     LoadRange,
     Record,
+    SeriesStiffness,
     SpeedRange,
-    Stiffness,
     TorsionalDamping,
     TorsionalStiffness,
     quantity_of,
@@ -132,9 +132,9 @@ class Damper(Record):
     geometry: Literal["published", "planar", "spatial"] = "planar"
     torsional_stiffness: TorsionalStiffness | None = None
     torsional_damping: TorsionalDamping | None = None
-    link_stiffness: Stiffness | None = None
+    link_stiffness: SeriesStiffness | None = None
     """Of the torque links, laterally at the apex, in series with the linkage [N/m]."""
-    series_stiffness: Stiffness | None = None
+    series_stiffness: SeriesStiffness | None = None
     """Of oil column, rod and brackets, in series with the damper [N/m]."""
     orifice: Orifice | None = None
     freeplay: Freeplay | None = None
@@ -222,6 +222,12 @@ class Study(Record):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
+        decay = self.requirements.decay if self.requirements else None
+        for i, speed in enumerate(decay.speeds or () if decay else ()):
+            low, high = self.envelope.speed.min, self.envelope.speed.max
+            if not low <= speed <= high:
+                allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
+                raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
         topology = self.damper.topology
         missing = [name for name in DESIGN_VARIABLES[topology] if getattr(self.design, name) is None]
         if missing:

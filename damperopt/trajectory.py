@@ -152,7 +152,7 @@ def extrema(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> tuple[np.n
     Parameters
     ----------
     time, value, rate : ndarray
-        (n,) samples of the function and of its derivative, n >= 3.
+        (n,) samples of the function and of its derivative; fewer than three show no extremum.
 
     Returns
     -------
@@ -160,6 +160,8 @@ def extrema(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> tuple[np.n
         Times, and values from the cubic Hermite interpolant. An error of the time hardly matters to the value there, so
         that differences of the rate are good enough as its slope.
     """
+    if time.size < 3:
+        return np.zeros(0), np.zeros(0)
     times = crossings(time, rate, np.gradient(rate, time, edge_order=2))
     return times, CubicHermiteSpline(time, value, rate)(times)
 

@@ -32,7 +32,8 @@ def _registry():
 def _factor(unit_text: str, target: str) -> float | None:
     """Factor from `unit_text` to `target`, or None where the dimensions differ or a unit is unknown."""
     registry = _registry()
-    spelled = re.sub(r"([A-Za-z])(\d)", r"\1^\2", unit_text)  # kg/m3, as engineers write it
+    spelled = re.sub(r"([A-Za-z])(\d)", r"\1^\2", unit_text)  # kg/m3 and kNm, as engineers write them
+    spelled = re.sub(r"N([ms])(?![a-zA-Z])", r"N \1", spelled)
     try:
         unit, wanted = registry.parse_units(spelled), registry.parse_units("" if target == "1" else target)
         # radians are dimensionless for pint; a percentage is no angle and an angle no plain number

@@ -106,9 +106,9 @@ class Design(Record):
 class Solver(Record):
     """Numbers of the solution method."""
 
-    starts: Annotated[int, Field(ge=1, le=4096)] = 16
+    starts: Annotated[int, Field(strict=True, ge=1, le=4096)] = 16
     """Starting points: the config's own and Sobol points within the bounds."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: Annotated[int, Field(strict=True, ge=0)] = 1
     tolerance: Annotated[float, Quantity("1", above=0, at_most=1e-4)] = 1e-8
     """Of IPOPT, in scaled variables."""
     margin_reserve: Annotated[float, Quantity("1/s", above=0, at_most=0.1)] = 1e-6
@@ -119,6 +119,6 @@ class Solver(Record):
     """Of the integrator, relative."""
     decay_reserve: Annotated[float, Quantity("1", above=0, at_most=0.1)] = 1e-4
     """Part of the decay ratio that is kept back while solving, for the exact simulation between the speeds used."""
-    decay_speeds: Annotated[int, Field(ge=2, le=1000)] = 16
+    decay_speeds: Annotated[int, Field(strict=True, ge=2, le=1000)] = 16
     """Speeds of the search for the worst decay; twice as many verify the result."""
-    verification_speeds: Annotated[int, Field(ge=2, le=1_000_000)] = 2000
+    verification_speeds: Annotated[int, Field(strict=True, ge=2, le=1_000_000)] = 2000

@@ -6,6 +6,10 @@ import pytest
 
 import damperopt
 
+NAME, RADIUS, PLANAR = "name: main gear", "wheel_radius: 0.362 m", "geometry: planar"
+MARGIN, RELEASE = "stability_margin: 0.1 1/s", "release: {yaw_angle: 0.25 deg}"
+ROTATIONAL = "topology: rotational\n  torsional_stiffness: 1\n  torsional_damping: 1\n  "
+
 # what to change in main_gear.yaml, where it is reported, and what the message must say
 BROKEN = {
     "unknown key": ("caster_length:", "caster_lenght:", "gear.caster_lenght", "did you mean 'caster_length'"),
@@ -39,6 +43,56 @@ BROKEN = {
     "no design variable": ("  I_arm:", "  #", "design.I_arm", "topology 'arreaza' needs design variables"),
     "rotational without numbers": ("topology: arreaza", "topology: rotational", "damper", "torsional_stiffness"),
     "yaml": ("order: 5", "order: [5", "", "not valid YAML"),
+    "decay to nothing": ("ratio: 1/3 ", "ratio: 0 ", "requirements.decay.ratio", "0 is out of range"),
+    "no decay": ("ratio: 1/3 ", "ratio: 1 ", "requirements.decay.ratio", "1 is out of range"),
+    "growth": ("ratio: 1/3 ", "ratio: 3/2 ", "requirements.decay.ratio", "1.5 is out of range"),
+    "ratio in words": ("ratio: 1/3 ", "ratio: one third ", "requirements.decay.ratio", "'one third' is not a number"),
+    "division by zero": ("ratio: 1/3 ", "ratio: 1/0 ", "requirements.decay.ratio", "'1/0'"),
+    "no cycles": ("cycles: 3", "cycles: 0", "requirements.decay.cycles", "found 0"),
+    "part of a cycle": ("cycles: 3", "cycles: 1.5", "requirements.decay.cycles", "found 1.5"),
+    "release and kick": (RELEASE, f"{RELEASE}\n    kick: {{yaw_rate: 1}}", "requirements.decay", "release and kick"),
+    "neither release nor kick": (RELEASE, "", "requirements.decay", "neither release nor kick; allowed: one of the two"),
+    "unknown state": (RELEASE, "release: {roll: 1 deg}", "requirements.decay.release.roll", "unknown key"),
+    "release of a rate": (RELEASE, "release: {yaw_rate: 1}", "requirements.decay.release.yaw_rate", "mean 'yaw_angle'"),
+    "release from rest": (RELEASE, "release: {yaw_angle: 0}", "requirements.decay.release", "nothing is disturbed"),
+    "release without yaw": (RELEASE, "release: {bending_angle: 1 deg}", "requirements.decay", "without yaw"),
+    "kick by nothing": (RELEASE, "kick: {yaw_rate: 0}", "requirements.decay.kick", "nothing is disturbed"),
+    "no decay speeds": (RELEASE, f"{RELEASE}\n    speeds: []", "requirements.decay.speeds", "an empty list"),
+    "negative decay speed": (RELEASE, f"{RELEASE}\n    speeds: [-5]", "requirements.decay.speeds.0", "-5 is out of range"),
+    "decay beyond the envelope": (RELEASE, f"{RELEASE}\n    speeds: [200]", "requirements.decay.speeds.0", "5 to 100 m/s"),
+    "empty decay": (RELEASE, f"{RELEASE}\n    speeds:", "requirements.decay.speeds", "found nothing; allowed"),
+    "empty freeplay": (
+        PLANAR,
+        f"freeplay:\n  {PLANAR}",
+        "damper.freeplay",
+        "found nothing; allowed: a mapping with",
+    ),
+    "rigid compliance": (PLANAR, f"series_stiffness: 1e14\n  {PLANAR}", "damper.series_stiffness", "<= 1e+10 N/m"),
+    "speed of light": ("max: 100 m/s", "max: 3e8 m/s", "envelope.speed.max", "<= 1000 m/s"),
+    "cycles in quotes": ("cycles: 3", "cycles: '3'", "requirements.decay.cycles", "a whole number, >= 1 and <= 100"),
+    "one decay speed": (RELEASE, f"{RELEASE}\n    speeds: 40", "requirements.decay.speeds", "found 40"),
+    "limit event": (MARGIN, f"limit_event: wheel\n  {MARGIN}", "requirements.limit_event", "'torque' or 'simulated'"),
+    "no gap": (PLANAR, f"freeplay: {{gap: 0}}\n  {PLANAR}", "damper.freeplay.gap", "0 is out of range"),
+    "negative gap": (PLANAR, f"freeplay: {{gap: -1 mm}}\n  {PLANAR}", "damper.freeplay.gap", "-1 mm (= -0.001 m) is out"),
+    "all corner": (PLANAR, f"freeplay: {{gap: 1 mm, smoothing: 0.6}}\n  {PLANAR}", "damper.freeplay.smoothing", "0.6 is out"),
+    "stop at rest": (PLANAR, f"end_stop: {{stroke: 0}}\n  {PLANAR}", "damper.end_stop.stroke", "0 is out of range"),
+    "soft stop": (PLANAR, f"end_stop: {{stroke: 1 mm, stiffness: -1}}\n  {PLANAR}", "damper.end_stop.stiffness", "-1 is out"),
+    "stop without stroke": (PLANAR, f"end_stop: {{stiffness: 1}}\n  {PLANAR}", "damper.end_stop.stroke", "missing key"),
+    "orifice that pushes": (PLANAR, f"orifice: {{coefficient: -1}}\n  {PLANAR}", "damper.orifice.coefficient", "-1 is out"),
+    "linear orifice": (PLANAR, f"orifice: {{coefficient: 1 N s/m}}\n  {PLANAR}", "damper.orifice.coefficient", "dimension"),
+    "negative compliance": (PLANAR, f"series_stiffness: -1\n  {PLANAR}", "damper.series_stiffness", "-1 is out of range"),
+    "rotational links": ("topology: arreaza", f"{ROTATIONAL}link_stiffness: 1 MN/m", "damper.link_stiffness", "no linkage"),
+    "rotational gap": ("topology: arreaza", f"{ROTATIONAL}freeplay: {{gap: 1 mm}}", "damper.freeplay", "no linkage"),
+    "geometry": ("geometry: planar", "geometry: spacial", "damper.geometry", "'published', 'planar' or 'spatial'"),
+    "no friction": (RADIUS, f"friction: {{torque: 0}}\n  {RADIUS}", "gear.friction.torque", "0 is out of range"),
+    "friction force": (RADIUS, f"friction: {{torque: 1 N}}\n  {RADIUS}", "gear.friction.torque", "another dimension"),
+    "no slip": ("tyre:\n", "tyre:\n  slip_range: 0 deg\n", "tyre.slip_range", "0 deg (= 0 rad) is out of range"),
+    "all slip": ("tyre:\n", "tyre:\n  slip_range: 90 deg\n", "tyre.slip_range", "90 deg (= 1.5708 rad) is out of range"),
+    "engine": (NAME, f"{NAME}\nsolver: {{engine: rk4}}", "solver.engine", "'auto', 'erk', 'cvodes' or 'idas'"),
+    "tolerance": (NAME, f"{NAME}\nsolver: {{integration_tolerance: 1}}", "solver.integration_tolerance", "1 is out of range"),
+    "no reserve": (NAME, f"{NAME}\nsolver: {{decay_reserve: 0}}", "solver.decay_reserve", "0 is out of range"),
+    "all reserve": (NAME, f"{NAME}\nsolver: {{decay_reserve: 1}}", "solver.decay_reserve", "1 is out of range"),
+    "one speed": (NAME, f"{NAME}\nsolver: {{decay_speeds: 1}}", "solver.decay_speeds", "found 1; input should be"),
 }
 
 
@@ -54,6 +108,16 @@ def test_message_names_file_line_key_and_what_is_allowed(case, configs):
     assert matching, messages
     assert re.match(rf"study\.yaml:\d+: {re.escape(key)}", matching[0])
     assert "allowed" in matching[0] or case == "yaml"
+
+
+def test_simulated_limit_event_needs_motions_to_simulate(configs):
+    """Without the block decay there is nothing to take the peaks from; the message says so under its key."""
+    text = (configs / "main_gear.yaml").read_text()
+    start, end = text.index("  decay:"), text.index("  lug_distance:")
+    with pytest.raises(
+        damperopt.ConfigError, match=r"study\.yaml:\d+: requirements\.decay: missing key; allowed: the block decay"
+    ):
+        damperopt.loads(text[:start] + "  limit_event: simulated\n" + text[end:], "study.yaml")
 
 
 def test_line_is_that_of_the_key(configs):

@@ -257,8 +257,8 @@ def slow_eigenvalues(A):
 @pytest.mark.parametrize("joint", ["link_stiffness", "series_stiffness"])
 def test_stiff_joint_leaves_the_rigid_eigenvalues_with_an_error_of_one_over_its_stiffness(matrix, joint):
     rigid = np.sort_complex(np.linalg.eigvals(boeing_by_hand(DESIGN["k_lambda"] * ELL**2, DESIGN["c_lambda"] * ELL**2)))
-    errors = [abs(slow_eigenvalues(matrix(**{joint: k})) - rigid).max() for k in (1e9, 1e10, 1e11)]
-    assert errors[0] < 2.0
+    errors = [abs(slow_eigenvalues(matrix(**{joint: k})) - rigid).max() for k in (1e8, 1e9, 1e10)]
+    assert errors[0] < 20.0
     assert np.log10(errors[0] / errors[1]) == pytest.approx(1, abs=CONVERGENCE_ORDER)
     assert np.log10(errors[1] / errors[2]) == pytest.approx(1, abs=CONVERGENCE_ORDER)
 

@@ -93,6 +93,12 @@ class DecayAnalysis:
         self._moving = ca.DM(slopes.sparsity(), 1).full().any(axis=0)
         self._disturbance = f"requirements.decay.{'release' if self.requirement.release else 'kick'}"
 
+    @property
+    def engine(self) -> str:
+        """Integrator in words."""
+        chosen = self.study.solver.engine
+        return {"erk": "erk", "cvodes": "cvodes (no C compiler here for erk)"}[best_engine()] if chosen == "auto" else chosen
+
     def _integrator(self, sensitivities: bool) -> Integrator:
         solver = self.study.solver
         engine = best_engine() if solver.engine == "auto" else solver.engine

@@ -19,6 +19,7 @@ from .answer import (
     start_result,
 )
 from .certify import certify
+from .decay import decay_analysis
 from .diagnose import diagnose
 from .errors import ConfigError
 from .exchange import EnvelopeSolution, best_local, held_again
@@ -239,7 +240,7 @@ def _decayed(
         return best, certificate, None
     for _ in range(REFINEMENTS):
         check = check_decay(study, best.solution.design, [(p.speed, p.load) for p in best.decay])
-        check = replace(check, optimised=best.decay[0].ratio)
+        check = replace(check, optimised=best.decay[0].ratio, engine=decay_analysis(study).engine)
         if check.passed or check.ratio > (1 + NEARLY) * check.limit:
             break
         missed.append((check.speed, check.load))

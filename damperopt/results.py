@@ -110,6 +110,8 @@ class DecayCheck:
         Exact simulations that were made.
     peaks : dict of str to float
         Largest magnitudes that they show [SI].
+    engine : str
+        Integrator of the optimiser, and whether a missing C compiler decided that.
     """
 
     passed: bool
@@ -121,6 +123,7 @@ class DecayCheck:
     optimised: float
     simulations: int
     peaks: dict[str, float]
+    engine: str = ""
 
 
 class _Record(BaseModel):

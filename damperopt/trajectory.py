@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 __all__ = ["TRAJECTORY_UNITS", "Decay", "Motion", "Trajectory", "crossings", "decay", "extrema", "motion_of"]
 
@@ -157,12 +157,12 @@ def extrema(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> tuple[np.n
     Returns
     -------
     tuple of ndarray
-        Times, and values from the cubic Hermite interpolant. An error of the time hardly matters to the value there, so
-        that differences of the rate are good enough as its slope.
+        Times, and values from the cubic Hermite interpolant. An error of the time hardly matters to the value there, but
+        it does to the sensitivities that are read at that time: a spline gives the slope of the rate to fourth order.
     """
     if time.size < 3:
         return np.zeros(0), np.zeros(0)
-    times = crossings(time, rate, np.gradient(rate, time, edge_order=2))
+    times = crossings(time, rate, CubicSpline(time, rate)(time, 1))
     return times, CubicHermiteSpline(time, value, rate)(times)
 
 

@@ -116,3 +116,13 @@ COMMANDED_PEAK = 1e-5
 
 PRINTED_ROW = 1e-9
 """Relative to the largest; columns of a CSV with eleven digits, one computed from two others."""
+
+DECAY_RATIO = 2e-6
+"""Relative; the default integration tolerance of 1e-8 over three cycles, and the cubic between 64 samples a cycle."""
+
+DECAY_GRADIENT = 2e-5
+"""Of ln(ratio) to ln(variable); the cubic between 64 samples a cycle, 2.4e-7, times some sixty radians of phase that a stiffness
+shifts."""
+
+SAME_WORST = 2e-3
+"""Relative; the largest of 61 speeds against a search between speeds, and a smooth curve sampled 400 times."""

@@ -156,6 +156,16 @@ class Simulator:
 def output_points(gear: LinearGear, speed: float, load: float, duration: float) -> int:
     """Output points that show every cycle of the fastest mode.
 
+    Parameters
+    ----------
+    gear : LinearGear
+    speed, load, duration : float
+        [m/s], [N], [s]
+
+    Returns
+    -------
+    int
+
     Raises
     ------
     ConfigError

@@ -121,8 +121,8 @@ DECAY_RATIO = 2e-6
 """Relative; the default integration tolerance of 1e-8 over three cycles, and the cubic between 64 samples a cycle."""
 
 DECAY_GRADIENT = 2e-5
-"""Of ln(ratio) to ln(variable); the cubic between 64 samples a cycle, 2.4e-7, times some sixty radians of phase that a stiffness
-shifts."""
+"""Of ln(ratio) to ln(variable); the cubic between 64 samples a cycle, 2.4e-7, times some sixty radians of phase that
+a stiffness shifts."""
 
 SAME_WORST = 2e-3
 """Relative; the largest of 61 speeds against a search between speeds, and a smooth curve sampled 400 times."""

@@ -78,11 +78,15 @@ def test_no_path_of_a_machine_in_the_tree():
 
 def test_numbers_of_readme_and_changelog_are_those_of_the_frozen_optima():
     """The optima themselves are tested in tests/optima."""
-    frozen = runpy.run_path(str(ROOT / "tests" / "optima" / "test_main_gear.py"))["FROZEN"]
+    optima = ROOT / "tests" / "optima"
+    frozen = runpy.run_path(str(optima / "test_main_gear.py"))["FROZEN"]
+    with_decay = runpy.run_path(str(optima / "test_main_gear_decay.py"))["FROZEN_WITH_DECAY"]
     changelog, readme = (ROOT / "CHANGELOG.md").read_text(), (ROOT / "README.md").read_text()
     for layout, (mass, _, _) in frozen.items():
         assert f"| {layout} | {mass:.3f} |" in changelog
-    mass, design, _ = frozen["arreaza"]
+        heavier = with_decay[layout][0]
+        assert f"| {layout} | {heavier:.3f} | {100 * (heavier / mass - 1):.1f} % |" in changelog
+    mass, design, _ = with_decay["arreaza"]
     assert f"{mass:.3f} kg = " in readme
     assert f"{design['c_lambda']:.0f}  N s/m" in readme
     assert f"{design['L']:.4f}  m" in readme

@@ -28,7 +28,7 @@ TorsionalStiffness = Annotated[float, Quantity("N m/rad", at_least=0, example="3
 TorsionalDamping = Annotated[float, Quantity("N m s/rad", at_least=0, example="300 N m s/rad")]
 Force = Annotated[float, Quantity("N", above=0, example="150 kN")]
 Torque = Annotated[float, Quantity("N m", above=0, example="12 kN m")]
-Speed = Annotated[float, Quantity("m/s", above=0, at_most=1000, example="120 kt")]
+Speed = Annotated[float, Quantity("m/s", above=0, at_most=1e4, example="120 kt")]
 Time = Annotated[float, Quantity("s", above=0, example="3 s")]
 Stress = Annotated[float, Quantity("Pa", above=0, example="200 GPa")]
 Density = Annotated[float, Quantity("kg/m^3", above=0, example="7850 kg/m^3")]

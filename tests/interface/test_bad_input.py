@@ -68,7 +68,7 @@ BROKEN = {
         "found nothing; allowed: a mapping with",
     ),
     "rigid compliance": (PLANAR, f"series_stiffness: 1e14\n  {PLANAR}", "damper.series_stiffness", "<= 1e+10 N/m"),
-    "speed of light": ("max: 100 m/s", "max: 3e8 m/s", "envelope.speed.max", "<= 1000 m/s"),
+    "speed of light": ("max: 100 m/s", "max: 3e8 m/s", "envelope.speed.max", "<= 10000 m/s"),
     "cycles in quotes": ("cycles: 3", "cycles: '3'", "requirements.decay.cycles", "a whole number, >= 1 and <= 100"),
     "one decay speed": (RELEASE, f"{RELEASE}\n    speeds: 40", "requirements.decay.speeds", "found 40"),
     "limit event": (MARGIN, f"limit_event: wheel\n  {MARGIN}", "requirements.limit_event", "'torque' or 'simulated'"),

@@ -170,4 +170,7 @@ def test_infeasible_decay_is_named_with_speed_and_shortfall(main_gear_with_decay
     assert result.status == "infeasible"
     assert "decay" in result.message
     assert "m/s" in result.message
-    print(result.message)
+    (enough,) = result.infeasibility.alone_enough
+    assert enough.name == "decay_ratio"
+    relaxed = optimise(study.replace(requirements__decay__ratio=1.001 * enough.needed))
+    assert relaxed.status == "solved"

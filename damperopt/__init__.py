@@ -8,6 +8,7 @@
 """
 
 from .certify import certify
+from .chart import StabilityChart, chart, joint_boundary
 from .config import json_schema, load, loads
 from .critical import critical_speeds
 from .decay import DecayAnalysis
@@ -41,13 +42,16 @@ __all__ = [
     "Motion",
     "OutputError",
     "Simulator",
+    "StabilityChart",
     "Study",
     "Trajectory",
     "certify",
+    "chart",
     "check_decay",
     "check_grid",
     "combinations",
     "critical_speeds",
+    "joint_boundary",
     "json_schema",
     "linear_gear",
     "load",

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from .disturbances import Disturbance
 from .errors import ConfigError
+from .plane import quantity_name, unit_of_quantity
 from .specs import Study
+from .units import Quantity
 
-__all__ = ["choices", "disturbance_of", "quantity", "speed_grid"]
+__all__ = ["axis_range", "choices", "disturbance_of", "quantity", "speed_grid", "values_of"]
 
 _SHORT: dict[str, dict[str, str]] = {
     "release": {"yaw": "yaw_angle", "bending": "bending_angle", "string": "string_deflection"},
@@ -117,6 +119,31 @@ def speed_grid(text: str, study: Study) -> np.ndarray:
         raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}")
     count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
     return low + step * np.arange(count)
+
+
+def axis_range(text: str, study: Study, option: str) -> tuple[str, float, float]:
+    """Name and range [SI] of ``NAME=LOW:HIGH``, such as c_lambda=0:2e5 or 'L=300 mm:0.8 m'."""
+    name, equals, given = text.partition("=")
+    low, colon, high = given.partition(":")
+    if not (equals and colon):
+        raise ConfigError(f"{option}: found '{text}'; allowed: NAME=LOW:HIGH, such as c_lambda=0:2e5")
+    return name.strip(), _in_unit(study, name.strip(), low, option), _in_unit(study, name.strip(), high, option)
+
+
+def values_of(text: str, study: Study, option: str) -> tuple[str, list[float]]:
+    """Name and values [SI] of ``NAME=VALUE,VALUE``, such as speed=40,80,160."""
+    name, equals, given = text.partition("=")
+    if not (equals and given.strip()):
+        raise ConfigError(f"{option}: found '{text}'; allowed: NAME=VALUE,VALUE, such as speed=40,80,160")
+    values = [_in_unit(study, name.strip(), part, option) for part in given.split(",")]
+    if len(set(values)) < len(values):
+        raise ConfigError(f"{option}: found '{text}', a value twice; allowed: different values")
+    return name.strip(), values
+
+
+def _in_unit(study: Study, name: str, text: str, option: str) -> float:
+    unit = unit_of_quantity(study, quantity_name(study, name))
+    return quantity(text.strip(), Annotated[float, Quantity(unit)], f"{option}: {name}")
 
 
 def choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:

@@ -20,19 +20,20 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from . import config, summary
-from .arguments import choices, disturbance_of, quantity, speed_grid
+from .arguments import axis_range, choices, disturbance_of, quantity, speed_grid, values_of
 from .certify import certify
+from .chart import chart as trace_chart
 from .critical import critical_speeds
-from .decay import decay_analysis
 from .design import combinations, optimise_each, rank
 from .errors import ConfigError, DamperoptError, Interrupted, OutputError
 from .events import ExactSimulator
 from .integrators import ENGINES
 from .materials import MATERIALS
-from .modes import ModeTable, track_modes
+from .modes import track_modes
 from .output import run_folder, write_modes, write_motion, write_ranking, write_run, write_trajectory
-from .records import Force, Speed, Time
+from .records import Force, Rate, Speed, Time
 from .results import DesignResult, load_result
+from .run_files import draw_modes, write_chart_files, write_design
 from .simulate import Simulator
 from .specs import Study
 from .stability import linear_gear
@@ -135,13 +136,13 @@ def optimise(
     def write(place: Path) -> None:
         shutil.copyfile(file, place / "config.yaml")
         if len(studies) == 1:
-            _write_design(place, studies[0], ordered[0], figures)
+            write_design(place, studies[0], ordered[0], figures)
             return
         write_ranking(place / "ranking.csv", ordered)
         for position, result in enumerate(ordered, 1):
             own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
             own.mkdir()
-            _write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
+            write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
 
     write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:
@@ -189,7 +190,7 @@ def analyse(
 
     def write(place: Path) -> None:
         write_modes(place / "modes.csv", tables)
-        _draw_modes(place, tables, margin)
+        draw_modes(place, tables, margin)
 
     write_run(folder, write)
     out.print(f"\nResults in {folder}", soft_wrap=True)
@@ -254,6 +255,45 @@ def simulate(
 
 
 @app.command()
+def chart(
+    file: ConfigArgument,
+    x: Annotated[str, typer.Option(metavar="NAME=LOW:HIGH", help="Horizontal axis, such as c_lambda=0:2e5.")],
+    y: Annotated[str, typer.Option(metavar="NAME=LOW:HIGH", help="Vertical axis, such as I_arm=0:1e-5.")],
+    vary: Annotated[str, typer.Option(metavar="NAME=VALUE,...", help="A family of curves, such as speed=40,80,160.")] = "",
+    margin: Annotated[str, typer.Option(help="Stability margin in 1/s.")] = "0",
+    design: Annotated[
+        Path | None, typer.Option(help="result.json of 'optimise', or its folder, marked. [default: the starts of the study]")
+    ] = None,
+    speed: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
+    load: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
+    tolerance: Annotated[float, typer.Option(help="Of the curves, in parts of the ranges.")] = 1e-5,
+    cells: Annotated[int, typer.Option(help="Coarse cells along an axis: what is smaller may be missed.")] = 48,
+    output: OutputOption = None,
+) -> None:
+    """Stability chart of two quantities: the boundary traced to a tolerance, its type and frequency."""
+    study = config.load(file)
+    values = None
+    if design is not None:
+        study, values = _with_design(study, load_result(design), file, design)
+    record = trace_chart(
+        study,
+        axis_range(x, study, "--x"),
+        axis_range(y, study, "--y"),
+        vary=values_of(vary, study, "--vary") if vary else None,
+        margin=quantity(margin, Rate, "--margin"),
+        design=values,
+        speed=quantity(speed, Speed, "--speed") if speed else None,
+        load=quantity(load, Force, "--load") if load else None,
+        cells=cells,
+        tolerance=tolerance,
+    )
+    folder = run_folder(output, f"{file.stem}-chart")
+    write_run(folder, lambda place: write_chart_files(place, record))
+    summary.show_chart(out, record)
+    out.print(f"\nResults in {folder}", soft_wrap=True)
+
+
+@app.command()
 def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Studies to check.")]) -> None:
     """Check one study or more; exit code 2 and one message per problem if something is wrong."""
     problems: list[str] = []
@@ -288,54 +328,6 @@ def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("st
 def schema() -> None:
     """Print the JSON Schema of a study, for editors."""
     sys.stdout.write(json.dumps(config.json_schema(), indent=2) + "\n")
-
-
-def _write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
-    (place / "result.json").write_text(result.to_json(), encoding="utf-8")
-    worst = result.stability
-    if worst is None:
-        return
-    low, high = study.envelope.speed.min, study.envelope.speed.max
-    grid = np.unique(np.linspace(low, high, 400))
-    before, after = linear_gear(study), linear_gear(study, result.design)
-    tables = [track_modes(after, grid, load) for load in study.envelope.loads]
-    write_modes(place / "modes.csv", tables)
-    if not figures:
-        return
-    from . import plots  # matplotlib takes longer to import than a design takes to find
-    from .region import feasible_region
-
-    shown = min(tables, key=lambda table: abs(table.load - worst.load))
-    plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
-    plots.save(plots.mass_by_part(result), place, "mass")
-    if result.decay is not None:
-        plots.save(_decay_figure(study, result), place, "decay")
-    plots.save(plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])), place, "region")
-
-
-def _decay_figure(study: Study, result: DesignResult) -> Any:
-    from . import plots
-
-    required, check = study.required.decay, result.decay
-    assert required is not None
-    assert check is not None
-    analysis = decay_analysis(study)
-    low, high = study.envelope.speed.min, study.envelope.speed.max
-    speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
-    ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]
-    duration = 1.8 * analysis.at(result.design, check.speed, check.load).time
-    motion = Simulator(study, result.design, "cvodes")(check.speed, check.load, required.disturbance, duration)
-    return plots.decay(motion, check, speeds, np.array(ratios))
-
-
-def _draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
-    from . import plots
-
-    for table in tables:
-        suffix = "" if len(tables) == 1 else f"-{table.load / 1e3:g}kN"
-        plots.save(
-            plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}"
-        )
 
 
 def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:

@@ -14,13 +14,23 @@ from pathlib import Path
 
 import numpy as np
 
+from .chart import StabilityChart
 from .disturbances import Disturbance
 from .errors import OutputError
 from .modes import ModeTable
 from .results import DesignResult
 from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
-__all__ = ["run_folder", "write_modes", "write_motion", "write_ranking", "write_run", "write_trajectory"]
+__all__ = [
+    "run_folder",
+    "write_chart",
+    "write_chart_json",
+    "write_modes",
+    "write_motion",
+    "write_ranking",
+    "write_run",
+    "write_trajectory",
+]
 
 MODE_COLUMNS = (
     "speed_m_s",
@@ -150,3 +160,27 @@ def write_motion(
         **asdict(motion),
     }
     path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_chart(path: Path, record: StabilityChart) -> None:
+    """Curves of a chart as CSV: one row per point, in order along each curve."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        varied = f"{record.varied.name} [{record.varied.unit}]" if record.varied else "family"
+        axes = [f"{axis.name} [{axis.unit}]" for axis in (record.x, record.y)]
+        writer.writerow([varied, "curve", *axes, "type", "frequency [Hz]"])
+        for family in record.families:
+            for number, curve in enumerate(family.curves, 1):
+                for (x, y), hopf, frequency in zip(curve.points, curve.hopf, curve.frequency, strict=True):
+                    kind = "Hopf" if hopf else "divergence"
+                    value = "" if family.value is None else f"{family.value:.12g}"
+                    writer.writerow([value, number, f"{x:.12g}", f"{y:.12g}", kind, f"{frequency:.9g}"])
+
+
+def write_chart_json(path: Path, record: StabilityChart) -> None:
+    """The same as JSON, with everything that was held fixed."""
+    data = asdict(record)
+    for family in data["families"]:
+        for curve in family["curves"]:
+            curve.update({key: curve[key].tolist() for key in ("points", "hopf", "frequency")})
+    path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

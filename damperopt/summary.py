@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from .chart import StabilityChart
 from .critical import CriticalSpeed
 from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
 from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
-__all__ = ["show_analysis", "show_design", "show_motion", "show_ranking"]
+__all__ = ["show_analysis", "show_chart", "show_design", "show_motion", "show_ranking"]
 
 SHOWN_PEAKS = (
     "yaw_angle",
@@ -164,3 +166,32 @@ def _number(value: float, unit: str) -> tuple[str, str]:
     if unit == "rad":
         return f"{math.degrees(value):.4g}", "deg"
     return f"{value:.5g}", unit
+
+
+def show_chart(console: Console, record: StabilityChart) -> None:
+    """Families of a chart with the length, kind and frequency of their curves."""
+    table = Table(box=None, pad_edge=False)
+    varied = record.varied.name if record.varied else "boundary"
+    for name in (varied, "curves", "points", "type", "frequency", "corners"):
+        table.add_column(name, justify="left" if name in (varied, "type") else "right")
+    for family in record.families:
+        hopf = np.concatenate([c.hopf for c in family.curves] or [np.zeros(0, bool)])
+        frequency = np.concatenate([c.frequency for c in family.curves] or [np.zeros(0)])[hopf]
+        kinds = [word for word, there in (("Hopf", hopf.any()), ("divergence", (~hopf).any())) if there]
+        everywhere = "stable" if family.origin_stable else "unstable"
+        value = "" if family.value is None else f"{family.value:g} {record.varied.unit}"  # type: ignore[union-attr]
+        band = f"{frequency.min():.3g} to {frequency.max():.3g} Hz" if frequency.size else ""
+        corners = sum(len(c.corners) for c in family.curves)
+        table.add_row(
+            value, str(len(family.curves)), str(hopf.size), " and ".join(kinds) or f"{everywhere} all over", band, str(corners)
+        )
+    console.print(table)
+    for family in record.families:
+        if family.abscissa is not None:
+            where = "" if family.value is None else f" at {family.value:g} {record.varied.unit}"  # type: ignore[union-attr]
+            console.print(f"Spectral abscissa of the design{where}: {family.abscissa:.6g} 1/s")
+    looked = sum(family.evaluations for family in record.families)
+    console.print(
+        f"Traced to {record.tolerance:g} of the ranges with {looked} eigenvalue problems; islands smaller than "
+        f"{record.cell:.3g} of the ranges may be missed."
+    )

@@ -1,0 +1,259 @@
+"""Stability charts: the boundary of a margin in a plane of two quantities, its type and frequency, and families of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .boundary import trace
+from .errors import ConfigError
+from .plane import Axis, Plane, quantity_name
+from .specs import Study
+from .stability import linear_gear
+
+__all__ = ["Curve", "Family", "StabilityChart", "chart", "joint_boundary"]
+
+STANDSTILL = 1e-6
+"""Part of the largest eigenvalue below which the imaginary part of a critical one is zero."""
+
+JUMP = 0.02
+"""Relative change of frequency between neighbours that tells one mode from another."""
+
+BATCH = 2_000_000
+"""Comparisons of points with segments that are in memory at once."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A piece of the boundary.
+
+    Attributes
+    ----------
+    points : ndarray
+        (m, 2) values of the two quantities [SI], in order; the first again at the end where it is closed.
+    hopf : ndarray
+        (m,) whether a pair of eigenvalues crosses; else a real one does: divergence.
+    frequency : ndarray
+        (m,) of the critical eigenvalue [Hz], 0 at divergence.
+    closed : bool
+    """
+
+    points: np.ndarray
+    hopf: np.ndarray
+    frequency: np.ndarray
+    closed: bool
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(k, 2) points [SI] where divergence and Hopf meet, or another mode becomes critical."""
+        jump = np.abs(np.diff(self.frequency)) > JUMP * np.maximum(self.frequency[1:], self.frequency[:-1])
+        at = np.flatnonzero((self.hopf[1:] != self.hopf[:-1]) | (jump & self.hopf[1:] & self.hopf[:-1]))
+        return (self.points[at] + self.points[at + 1]) / 2
+
+
+@dataclass(frozen=True)
+class Family:
+    """All curves for one value of what a chart varies (None: nothing is varied)."""
+
+    value: float | None
+    curves: tuple[Curve, ...]
+    origin_stable: bool
+    """Whether the margin is kept where both quantities are least."""
+    abscissa: float | None
+    """Spectral abscissa of the design that is drawn in [1/s]."""
+    evaluations: int
+
+
+@dataclass(frozen=True)
+class StabilityChart:
+    """Chart of a plane.
+
+    Attributes
+    ----------
+    x, y : Axis
+    margin : float
+        [1/s]
+    varied : Axis or None
+        Name and unit of what distinguishes the families.
+    families : tuple of Family
+    design : dict
+        Design variables [SI] that hold where they are not varied.
+    mark : tuple or None
+        (x, y) of the design in the plane.
+    speed, load : float
+        Where they are not varied [m/s], [N].
+    tolerance, cell : float
+        Distance of chords from the boundary, and the size down to which branches and islands are found by sign; both in
+        fractions of the ranges. Smaller islands are sought from every local extremum of the grid, without a guarantee.
+    """
+
+    x: Axis
+    y: Axis
+    margin: float
+    varied: Axis | None
+    families: tuple[Family, ...]
+    design: dict[str, float]
+    mark: tuple[float, float] | None
+    speed: float
+    load: float
+    tolerance: float
+    cell: float
+
+    def stable(self, x: np.ndarray, y: np.ndarray, family: int = 0) -> np.ndarray:
+        """Whether the margin is kept, read off the curves alone.
+
+        Parameters
+        ----------
+        x, y : ndarray
+            (m,) points of the plane [SI].
+        family : int
+
+        Returns
+        -------
+        ndarray
+            (m,) bool: from the corner of least values along the lower edge, then up, each crossing changes the side.
+        """
+        shown = self.families[family]
+        low, span = np.array([self.x.low, self.y.low]), np.array([self.x.high - self.x.low, self.y.high - self.y.low])
+        u, v = (np.stack([np.ravel(x), np.ravel(y)]) - low[:, None]) / span[:, None]
+        crossings = np.zeros(u.size, int)
+        for curve in shown.curves:
+            p = (curve.points - low) / span
+            if not curve.closed:
+                ends = p[[0, -1]]
+                crossings += (ends[ends[:, 1] == 0][:, 0][:, None] < u).sum(axis=0)
+            a, b = p[:-1], p[1:]
+            step = max(BATCH // max(len(a), 1), 1)
+            for i in range(0, u.size, step):
+                here = slice(i, i + step)
+                spans = (a[:, 0][:, None] < u[here]) != (b[:, 0][:, None] < u[here])
+                run = np.where(b[:, 0] == a[:, 0], 1.0, b[:, 0] - a[:, 0])[:, None]
+                height = a[:, 1][:, None] + (b - a)[:, 1][:, None] * (u[here] - a[:, 0][:, None]) / run
+                crossings[here] += (spans & (height < v[here])).sum(axis=0)
+        return (shown.origin_stable ^ (crossings % 2 == 1)).reshape(np.shape(x))
+
+
+def chart(
+    study: Study,
+    x: tuple[str, float, float],
+    y: tuple[str, float, float],
+    *,
+    vary: tuple[str, Sequence[float]] | None = None,
+    margin: float = 0.0,
+    design: Mapping[str, float] | None = None,
+    speed: float | None = None,
+    load: float | None = None,
+    cells: int = 48,
+    tolerance: float = 1e-5,
+) -> StabilityChart:
+    """Trace the boundary of a stability margin in a plane of two quantities.
+
+    Parameters
+    ----------
+    study : Study
+    x, y : tuple
+        (name, low, high) [SI]: ``speed``, ``vertical_load``, a design variable, or a number of the gear, the tyre, the damper
+        or the material by its key path.
+    vary : tuple or None
+        (name, values) [SI]: one family of curves for each value.
+    margin : float
+        [1/s]
+    design : mapping or None
+        Design variables [SI], marked in the chart; None: the starts of the study, not marked.
+    speed, load : float or None
+        Where they are not varied [m/s], [N]; None: the largest of the envelope.
+    cells : int
+        Coarse cells along each axis.
+    tolerance : float
+        Distance between chords and boundary, in fractions of the ranges.
+
+    Returns
+    -------
+    StabilityChart
+
+    Raises
+    ------
+    ConfigError
+        If a quantity or a range is not allowed.
+    """
+    if not 4 <= cells <= 2000:
+        raise ConfigError(f"cells: found {cells}; allowed: 4 to 2000")
+    if not 1e-9 <= tolerance <= 1e-2:
+        raise ConfigError(f"tolerance: found {tolerance}; allowed: 1e-9 to 1e-2")
+    if not 0 <= margin < np.inf:
+        raise ConfigError(f"margin: found {margin}; allowed: a number >= 0 in 1/s")
+    values = {**study.start, **(design or {})}
+    speed = study.envelope.speed.max if speed is None else speed
+    load = max(study.envelope.loads) if load is None else load
+    plane = Plane(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin)
+    varied: Axis | None = None
+    families: list[float | None] = [None] if vary is None else list(vary[1])
+    if vary is not None:
+        name = quantity_name(study, vary[0])
+        if name in (plane.x.name, plane.y.name):
+            raise ConfigError(f"vary: {name} is on an axis; allowed: another quantity")
+        varied = Axis.of(study, name, min(vary[1]), float(np.nextafter(max(vary[1]), np.inf)))
+    numbers = {**values, "speed": speed, "vertical_load": load}
+    mark = (numbers[plane.x.name], numbers[plane.y.name]) if {plane.x.name, plane.y.name} <= numbers.keys() and design else None
+    made = []
+    for value in families:
+        fixed = {} if varied is None or value is None else {varied.name: float(value)}
+        made.append(_family(replace(plane, fixed=fixed, evaluations=0), value, mark, cells, tolerance))
+    return StabilityChart(plane.x, plane.y, margin, varied, tuple(made), values, mark, speed, load, tolerance, 1 / cells)
+
+
+def _family(plane: Plane, value: float | None, mark: tuple[float, float] | None, cells: int, tolerance: float) -> Family:
+    lines = trace(plane.excess, cells, tolerance=tolerance)
+    corner = bool(plane.excess(np.zeros(1), np.zeros(1))[0] < 0)
+    curves = []
+    for line in lines:
+        u, v = line.points.T
+        roots = plane.rightmost(u, v)
+        hopf = roots.imag > STANDSTILL * np.abs(plane.matrices(u, v)).max(axis=(1, 2))
+        points = np.column_stack([plane.x.at(u), plane.y.at(v)])
+        curves.append(Curve(points, hopf, np.where(hopf, roots.imag / (2 * np.pi), 0.0), line.closed))
+    abscissa = None
+    if mark is not None:
+        at = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
+        abscissa = float(plane.excess(*at)[0]) - plane.margin
+    return Family(value, tuple(curves), corner, abscissa, plane.evaluations)
+
+
+def joint_boundary(
+    study: Study, speed: float, load: float, frequencies: np.ndarray, margin: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping about the yaw axis at which the gear has the eigenvalue -margin + i w: an explicit curve.
+
+    With G(s) the receptance of the gear without damper at the strut, yaw angle over yaw torque, the characteristic equation
+    with k + s c at this joint is k + s c = -1/G(s), for any number of states.
+
+    Parameters
+    ----------
+    study : Study
+        Its damper has no part in it.
+    speed, load : float
+        [m/s], [N]
+    frequencies : ndarray
+        (m,) w/(2 pi) > 0 [Hz].
+    margin : float
+        [1/s]
+
+    Returns
+    -------
+    tuple of ndarray
+        (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
+    """
+    free = {"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}
+    gear = linear_gear(study.replace(damper=free))
+    A = gear.matrices(speed, load)[0]
+    s = -margin + 2j * np.pi * np.asarray(frequencies, float)
+    torque = np.zeros(len(A))
+    torque[gear.state_names.index("yaw_rate")] = 1 / study.gear.yaw_inertia
+    receptance = np.linalg.solve(s[:, None, None] * np.eye(len(A)) - A, torque[:, None])[
+        :, gear.state_names.index("yaw_angle"), 0
+    ]
+    stiffness = -1 / receptance
+    c_psi = stiffness.imag / s.imag
+    return stiffness.real - s.real * c_psi, c_psi

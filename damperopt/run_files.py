@@ -1,0 +1,83 @@
+"""Files of a run: what each command puts into its folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .chart import StabilityChart
+from .decay import decay_analysis
+from .modes import ModeTable, track_modes
+from .output import write_chart, write_chart_json, write_modes
+from .results import DesignResult
+from .simulate import Simulator
+from .specs import Study
+from .stability import linear_gear
+
+__all__ = ["draw_modes", "write_chart_files", "write_design"]
+
+
+def write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
+    (place / "result.json").write_text(result.to_json(), encoding="utf-8")
+    worst = result.stability
+    if worst is None:
+        return
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    grid = np.unique(np.linspace(low, high, 400))
+    before, after = linear_gear(study), linear_gear(study, result.design)
+    tables = [track_modes(after, grid, load) for load in study.envelope.loads]
+    write_modes(place / "modes.csv", tables)
+    if not figures:
+        return
+    from . import plots  # matplotlib takes longer to import than a design takes to find
+    from .region import feasible_region
+
+    shown = min(tables, key=lambda table: abs(table.load - worst.load))
+    plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
+    plots.save(plots.mass_by_part(result), place, "mass")
+    if result.decay is not None:
+        plots.save(_decay_figure(study, result), place, "decay")
+    plots.save(plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])), place, "region")
+
+
+def _decay_figure(study: Study, result: DesignResult) -> Any:
+    from . import plots
+
+    required, check = study.required.decay, result.decay
+    assert required is not None
+    assert check is not None
+    analysis = decay_analysis(study)
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
+    ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]
+    duration = 1.8 * analysis.at(result.design, check.speed, check.load).time
+    motion = Simulator(study, result.design, "cvodes")(check.speed, check.load, required.disturbance, duration)
+    return plots.decay(motion, check, speeds, np.array(ratios))
+
+
+def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
+    from . import plots
+
+    for table in tables:
+        suffix = "" if len(tables) == 1 else f"-{table.load / 1e3:g}kN"
+        plots.save(
+            plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}"
+        )
+
+
+def write_chart_files(place: Path, record: StabilityChart) -> None:
+    """Curves as CSV and JSON, and the figure.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    record : StabilityChart
+    """
+    from . import plots
+
+    write_chart(place / "chart.csv", record)
+    write_chart_json(place / "chart.json", record)
+    plots.save(plots.chart(record), place, "chart")

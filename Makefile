@@ -26,6 +26,7 @@ format: $(VENV)/installed-dev
 benchmark: $(VENV)/installed
 	$(BIN)/python benchmarks/optimise.py
 	$(BIN)/python benchmarks/transients.py
+	$(BIN)/python benchmarks/charts.py
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("damperopt needs Python 3.11 or newer; set PYTHON=...")'

@@ -16,7 +16,9 @@ from .design import combinations, optimise, optimise_each, rank
 from .disturbances import Disturbance
 from .errors import CertificateError, ConfigError, DamperoptError, OutputError
 from .events import ExactSimulator, simulate_exactly
+from .maps import FilledMap, StabilityMap, filled_map
 from .modes import ModeTable, track_modes
+from .plane import Axis, Plane
 from .problem import DesignProblem
 from .results import Certificate, DesignResult, load_result
 from .simulate import Simulator, simulate
@@ -27,6 +29,7 @@ from .verify import GridCheck, check_decay, check_grid
 from .worst import worst_points
 
 __all__ = [
+    "Axis",
     "Certificate",
     "CertificateError",
     "ConfigError",
@@ -36,13 +39,16 @@ __all__ = [
     "DesignResult",
     "Disturbance",
     "ExactSimulator",
+    "FilledMap",
     "GridCheck",
     "LinearGear",
     "ModeTable",
     "Motion",
     "OutputError",
+    "Plane",
     "Simulator",
     "StabilityChart",
+    "StabilityMap",
     "Study",
     "Trajectory",
     "certify",
@@ -51,6 +57,7 @@ __all__ = [
     "check_grid",
     "combinations",
     "critical_speeds",
+    "filled_map",
     "joint_boundary",
     "json_schema",
     "linear_gear",

@@ -34,6 +34,7 @@ EDGES = {
 
 ROOT = {"xatol": 1e-13, "xrtol": 1e-13}
 SPLIT_ROUNDS = 18
+WINDOW_CELLS = 24
 SEARCHES = 40
 """Local searches for islands smaller than a cell, the most promising first."""
 
@@ -72,15 +73,31 @@ def trace(excess: Excess, cells: int = 48, splits: int = 2, tolerance: float = 1
     fine = _Fine(excess, cells * 2**splits)
     fine.known.update({(i << splits, j << splits): values[i, j] for i in range(cells + 1) for j in range(cells + 1)})
     mixed = {(i, j) for i, j in zip(*np.nonzero(_mixed(values)), strict=True)}
-    seeds = [_crossing_cell(excess, place, fine.count) for place in _hidden(excess, grid, values)]
+    seeds = list(dict.fromkeys(_crossing_cell(excess, pair, fine.count) for pair in _hidden(excess, grid, values)))
     level = {(int(i), int(j)) for i, j in mixed}
     for split in range(1, splits + 1):
         step = 1 << (splits - split)
         children = {(2 * i + a, 2 * j + b) for i, j in level for a in (0, 1) for b in (0, 1)}
         level = fine.followed(children, step)
-    level |= fine.followed({cell for cell in seeds if cell is not None}, 1)
-    lines = _joined(*fine.segments(sorted(level)))
-    return [Polyline(_refined(excess, line, tolerance)) for line in lines]
+    within = [fine.followed({cell}, 1) for cell in seeds]
+    lines = _joined(*fine.segments(sorted(level.union(*within))))
+    found = [Polyline(_refined(excess, line, tolerance)) for line in lines]
+    for (i, j), traced in zip(seeds, within, strict=True):
+        if not traced:  # the island lies between the corners of one fine cell
+            found += _enlarged(excess, np.array([i - 1.5, j - 1.5]) / fine.count, 4 / fine.count, tolerance)
+    return found
+
+
+def _enlarged(excess: Excess, corner: np.ndarray, width: float, tolerance: float) -> list[Polyline]:
+    """Islands in a window that is smaller than the cells."""
+
+    def inside(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return excess(np.clip(corner[0] + width * u, 0, 1), np.clip(corner[1] + width * v, 0, 1))
+
+    if width < tolerance:
+        return []
+    lines = trace(inside, WINDOW_CELLS, 1, min(tolerance / width, 0.01))
+    return [Polyline(corner + width * line.points) for line in lines if line.closed]
 
 
 class _Fine:
@@ -197,7 +214,7 @@ def _hidden(excess: Excess, grid: np.ndarray, values: np.ndarray) -> list[tuple[
     return found
 
 
-def _crossing_cell(excess: Excess, pair: tuple[np.ndarray, np.ndarray], count: int) -> Cell | None:
+def _crossing_cell(excess: Excess, pair: tuple[np.ndarray, np.ndarray], count: int) -> Cell:
     """Fine cell in which the boundary lies between two points."""
     place = _roots(excess, pair[0][None], pair[1][None])[0]
     i, j = np.clip((place * count).astype(int), 0, count - 1)

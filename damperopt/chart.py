@@ -21,6 +21,9 @@ STANDSTILL = 1e-6
 JUMP = 0.02
 """Relative change of frequency between neighbours that tells one mode from another."""
 
+NEAR = 20
+"""Tolerances between the neighbours at a corner, at most."""
+
 BATCH = 2_000_000
 """Comparisons of points with segments that are in memory at once."""
 
@@ -38,19 +41,15 @@ class Curve:
     frequency : ndarray
         (m,) of the critical eigenvalue [Hz], 0 at divergence.
     closed : bool
+    corners : ndarray
+        (k, 2) points [SI] where divergence and Hopf meet, or another mode becomes critical.
     """
 
     points: np.ndarray
     hopf: np.ndarray
     frequency: np.ndarray
     closed: bool
-
-    @property
-    def corners(self) -> np.ndarray:
-        """(k, 2) points [SI] where divergence and Hopf meet, or another mode becomes critical."""
-        jump = np.abs(np.diff(self.frequency)) > JUMP * np.maximum(self.frequency[1:], self.frequency[:-1])
-        at = np.flatnonzero((self.hopf[1:] != self.hopf[:-1]) | (jump & self.hopf[1:] & self.hopf[:-1]))
-        return (self.points[at] + self.points[at + 1]) / 2
+    corners: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -213,12 +212,26 @@ def _family(plane: Plane, value: float | None, mark: tuple[float, float] | None,
         roots = plane.rightmost(u, v)
         hopf = roots.imag > STANDSTILL * np.abs(plane.matrices(u, v)).max(axis=(1, 2))
         points = np.column_stack([plane.x.at(u), plane.y.at(v)])
-        curves.append(Curve(points, hopf, np.where(hopf, roots.imag / (2 * np.pi), 0.0), line.closed))
+        frequency = np.where(hopf, roots.imag / (2 * np.pi), 0.0)
+        at = _corners(line.points, hopf, frequency, tolerance)
+        curves.append(Curve(points, hopf, frequency, line.closed, (points[at] + points[at + 1]) / 2))
     abscissa = None
     if mark is not None:
-        at = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
-        abscissa = float(plane.excess(*at)[0]) - plane.margin
+        place = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
+        abscissa = float(plane.excess(*place)[0]) - plane.margin
     return Family(value, tuple(curves), corner, abscissa, plane.evaluations)
+
+
+def _corners(points: np.ndarray, hopf: np.ndarray, frequency: np.ndarray, tolerance: float) -> np.ndarray:
+    """Points (k,) behind which the kind changes, or the frequency jumps: there the chords are as short as the tolerance."""
+    near = np.linalg.norm(np.diff(points, axis=0), axis=1) < NEAR * tolerance
+    jump = near & (np.abs(np.diff(frequency)) > JUMP * np.maximum(frequency[1:], frequency[:-1]))
+    kind = hopf[1:] != hopf[:-1]
+    found: list[int] = []
+    for k in [*np.flatnonzero(kind), *np.flatnonzero(jump & ~kind)]:
+        if all(np.linalg.norm(points[k] - points[other]) > 3 * NEAR * tolerance for other in found):
+            found.append(int(k))
+    return np.array(sorted(found), int)
 
 
 def joint_boundary(

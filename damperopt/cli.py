@@ -28,9 +28,11 @@ from .design import combinations, optimise_each, rank
 from .errors import ConfigError, DamperoptError, Interrupted, OutputError
 from .events import ExactSimulator
 from .integrators import ENGINES
+from .maps import filled_map
 from .materials import MATERIALS
 from .modes import track_modes
 from .output import run_folder, write_modes, write_motion, write_ranking, write_run, write_trajectory
+from .plane import Plane
 from .records import Force, Rate, Speed, Time
 from .results import DesignResult, load_result
 from .run_files import draw_modes, write_chart_files, write_design
@@ -266,6 +268,7 @@ def chart(
     ] = None,
     speed: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
     load: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
+    fill: Annotated[str, typer.Option("--map", metavar="abscissa|damping", help="Fill the plane with it.")] = "",
     tolerance: Annotated[float, typer.Option(help="Of the curves, in parts of the ranges.")] = 1e-5,
     cells: Annotated[int, typer.Option(help="Coarse cells along an axis: what is smaller may be missed.")] = 48,
     output: OutputOption = None,
@@ -287,8 +290,16 @@ def chart(
         cells=cells,
         tolerance=tolerance,
     )
+    if fill not in ("", "abscissa", "damping") or (fill and vary):
+        raise ConfigError(
+            f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"
+        )
     folder = run_folder(output, f"{file.stem}-chart")
-    write_run(folder, lambda place: write_chart_files(place, record))
+    filled = None
+    if fill:
+        plane = Plane(study, record.x, record.y, record.design, record.speed, record.load, record.margin)
+        filled = filled_map(plane, fill)  # type: ignore[arg-type]
+    write_run(folder, lambda place: write_chart_files(place, record, filled))
     summary.show_chart(out, record)
     out.print(f"\nResults in {folder}", soft_wrap=True)
 

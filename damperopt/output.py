@@ -182,5 +182,5 @@ def write_chart_json(path: Path, record: StabilityChart) -> None:
     data = asdict(record)
     for family in data["families"]:
         for curve in family["curves"]:
-            curve.update({key: curve[key].tolist() for key in ("points", "hopf", "frequency")})
+            curve.update({key: curve[key].tolist() for key in ("points", "hopf", "frequency", "corners")})
     path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

@@ -154,6 +154,16 @@ class Plane:
         inputs = [rows(keys) for keys in (names, ("speed",), ("vertical_load",), self._data_names)]
         return self._model.state_matrix(*inputs).full().reshape(n, m, n).transpose(1, 0, 2)
 
+    def symbolic_matrix(self, x: ca.SX, y: ca.SX) -> ca.SX:
+        """State matrix as an expression of the two quantities [SI]; all else is folded into constants."""
+        varied = {self.x.name: x, self.y.name: y}
+
+        def column(keys: tuple[str, ...]) -> ca.SX:
+            return ca.vertcat(*(varied[key] if key in varied else ca.SX(self._values[key]) for key in keys))
+
+        inputs = [column(keys) for keys in (self._model.design_names, ("speed",), ("vertical_load",), self._data_names)]
+        return self._model.state_matrix(*inputs)
+
     def excess(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Spectral abscissa plus margin [1/s]: negative where the margin is kept."""
         u, v = np.broadcast_arrays(u, v)

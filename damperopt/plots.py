@@ -11,16 +11,24 @@ matplotlib.use("Agg", force=False)
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import ListedColormap
 from matplotlib.ticker import NullLocator
 
-from .chart import Curve, Family, StabilityChart
 from .modes import ModeTable
 from .region import FeasibleRegion
 from .results import UNITS, DecayCheck, DesignResult
 from .trajectory import Motion, Trajectory
 
-__all__ = ["chart", "decay", "mass_by_part", "modes_before_after", "modes_over_speed", "region", "save", "trajectory"]
+__all__ = [
+    "STYLE",
+    "SYMBOLS",
+    "decay",
+    "mass_by_part",
+    "modes_before_after",
+    "modes_over_speed",
+    "region",
+    "save",
+    "trajectory",
+]
 
 COLOURS = {"torsional": "#0b6e99", "lateral": "#c2571a", "string": "#6b6b6b"}
 STYLE: Any = {
@@ -37,9 +45,6 @@ SYMBOLS = {
     "k_lambda": r"Spring stiffness $k_\lambda$",
     "I_arm": r"Second moment of area of the arm $I_\mathrm{arm}$",
 }
-DIVERGENCE = (0, (4, 1.5))
-STABLE_SIDE = ListedColormap(["#cfe8d5"])
-SHADE_PIXELS = 400
 LIMITS = {
     "decay_ratio": ("decay", "#00798c", "-"),
     "arm_stress": ("arm stress", "#333333", "--"),
@@ -296,91 +301,3 @@ def decay(record: Trajectory, check: DecayCheck, speeds: np.ndarray, ratios: np.
         right.set(xlabel="Speed [m/s]", ylabel=f"Decay ratio after {check.cycles} cycles", ylim=(0, 1.25 * check.limit))
         right.margins(x=0)
         return figure
-
-
-def chart(record: StabilityChart, axis: Any = None) -> Any:
-    """Stability boundaries with their families, the stable side, corners and the design.
-
-    Parameters
-    ----------
-    record : StabilityChart
-    axis : matplotlib Axes or None
-
-    Returns
-    -------
-    matplotlib Figure
-    """
-    with plt.rc_context(STYLE):
-        if axis is None:
-            _, axis = plt.subplots(figsize=(7.5, 5.6))
-        x, y = (np.linspace(a.low, a.high, 2 * SHADE_PIXELS + 1)[1::2] for a in (record.x, record.y))
-        X, Y = np.meshgrid(x, y)
-        kept = np.all([record.stable(X, Y, k) for k in range(len(record.families))], axis=0)
-        extent = (record.x.low, record.x.high, record.y.low, record.y.high)
-        axis.imshow(np.where(kept, 1.0, np.nan), extent=extent, origin="lower", aspect="auto", cmap=STABLE_SIDE, vmin=0, vmax=1)
-        several = len(record.families) > 1
-        words = "stable" if record.margin == 0 else f"margin of {record.margin:g} 1/s kept"
-        handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color=STABLE_SIDE(1.0))]
-        labels = [f"{words} in all" if several else words]
-        colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(record.families))) if several else ["#0b6e99"]
-        for k, (family, colour) in enumerate(zip(record.families, colours, strict=True)):
-            for curve in family.curves:
-                _draw_curve(axis, curve, colour)
-            handles.append(plt.Line2D([], [], color=colour, lw=1.6))
-            labels.append(_family_words(record, family))
-            if several and family.curves:
-                longest = max(family.curves, key=lambda c: len(c.points))
-                spread = np.linspace(0.3, 0.7, len(record.families))[k]
-                _label(axis, longest.points[int(spread * len(longest.points))], _value_words(record, family), colour)
-        if any((~curve.hopf).any() for family in record.families for curve in family.curves):
-            handles.append(plt.Line2D([], [], color="#333333", lw=1.6, ls=DIVERGENCE))
-            labels.append("divergence (else Hopf)")
-        if record.mark is not None:
-            (star,) = axis.plot(*record.mark, "*", ms=14, color="#e0a100", mec="black", ls="none", clip_on=False)
-            worst = max(family.abscissa for family in record.families if family.abscissa is not None)
-            handles.append(star)
-            labels.append(f"design, abscissa {worst:.3g} 1/s")
-        axis.set(xlim=extent[:2], ylim=extent[2:])
-        for setter, a in ((axis.set_xlabel, record.x), (axis.set_ylabel, record.y)):
-            unit = a.unit.replace("^4", "⁴").replace("^2", "²").replace("^3", "³")
-            setter(f"{SYMBOLS.get(a.name, a.name.split('.')[-1].replace('_', ' ').capitalize())} [{unit}]")
-        axis.ticklabel_format(axis="both", style="sci", scilimits=(-3, 4))
-        axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-        held = [("speed", f"{record.speed:g} m/s"), ("vertical_load", f"{record.load / 1e3:g} kN")]
-        names = {record.x.name, record.y.name, record.varied.name if record.varied else ""}
-        axis.set_title("Stability boundary" + "".join(f", {text}" for name, text in held if name not in names), fontsize=10)
-        return axis.figure
-
-
-def _draw_curve(axis: Any, curve: Curve, colour: Any) -> None:
-    """Hopf solid, divergence dashed, a dot where they meet."""
-    segments = curve.hopf[1:] | curve.hopf[:-1]
-    begin = 0
-    for end in [*(np.flatnonzero(segments[1:] != segments[:-1]) + 1), len(segments)]:
-        style = "-" if segments[begin] else DIVERGENCE
-        axis.plot(*curve.points[begin : end + 1].T, color=colour, lw=1.6, ls=style)
-        begin = end
-    axis.plot(*curve.corners.T, "o", ms=4, color="black", ls="none")
-
-
-def _value_words(record: StabilityChart, family: Family) -> str:
-    if record.varied is None or family.value is None:
-        return "boundary"
-    return f"{family.value:.4g}" + (f" {record.varied.unit}" if record.varied.unit != "1" else "")
-
-
-def _family_words(record: StabilityChart, family: Family) -> str:
-    """Value and range of frequencies of a family, for the legend."""
-    frequencies = np.concatenate([curve.frequency[curve.hopf] for curve in family.curves] or [np.zeros(0)])
-    words = _value_words(record, family)
-    if not family.curves:
-        return f"{words}: no boundary, {'stable' if family.origin_stable else 'unstable'} all over"
-    if not frequencies.size:
-        return words
-    low, high = frequencies.min(), frequencies.max()
-    return f"{words}: {low:.3g} Hz" if f"{low:.3g}" == f"{high:.3g}" else f"{words}: {low:.3g} to {high:.3g} Hz"
-
-
-def _label(axis: Any, place: np.ndarray, words: str, colour: Any) -> None:
-    box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
-    axis.text(*place, words, fontsize=8, color=colour, ha="left", va="center", bbox=box)

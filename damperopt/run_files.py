@@ -9,6 +9,7 @@ import numpy as np
 
 from .chart import StabilityChart
 from .decay import decay_analysis
+from .maps import FilledMap
 from .modes import ModeTable, track_modes
 from .output import write_chart, write_chart_json, write_modes
 from .results import DesignResult
@@ -20,6 +21,16 @@ __all__ = ["draw_modes", "write_chart_files", "write_design"]
 
 
 def write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
+    """Result, modes and figures of a design.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    study : Study
+    result : DesignResult
+    figures : bool
+    """
     (place / "result.json").write_text(result.to_json(), encoding="utf-8")
     worst = result.stability
     if worst is None:
@@ -58,6 +69,16 @@ def _decay_figure(study: Study, result: DesignResult) -> Any:
 
 
 def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
+    """Figures of modes over speed, one for each load.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    tables : list of ModeTable
+    margin : float
+        [1/s]
+    """
     from . import plots
 
     for table in tables:
@@ -67,7 +88,7 @@ def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
         )
 
 
-def write_chart_files(place: Path, record: StabilityChart) -> None:
+def write_chart_files(place: Path, record: StabilityChart, filled: FilledMap | None = None) -> None:
     """Curves as CSV and JSON, and the figure.
 
     Parameters
@@ -75,9 +96,13 @@ def write_chart_files(place: Path, record: StabilityChart) -> None:
     place : Path
         Folder.
     record : StabilityChart
+    filled : FilledMap or None
     """
     from . import plots
+    from .chart_plot import chart as draw
 
     write_chart(place / "chart.csv", record)
     write_chart_json(place / "chart.json", record)
-    plots.save(plots.chart(record), place, "chart")
+    if filled is not None:
+        np.savez_compressed(place / "map.npz", x=filled.x, y=filled.y, values=filled.values, quantity=np.array(filled.quantity))
+    plots.save(draw(record, filled), place, "chart")

@@ -126,3 +126,6 @@ a stiffness shifts."""
 
 SAME_WORST = 2e-3
 """Relative; the largest of 61 speeds against a search between speeds, and a smooth curve sampled 400 times."""
+
+ON_THE_CURVE = 1e-11
+"""Of the largest entry of the state matrix; rounding of its eigenvalues, after roots to 1e-13 of the ranges."""

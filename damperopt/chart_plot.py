@@ -1,0 +1,130 @@
+"""Figures of stability charts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import ListedColormap
+
+from .chart import Curve, Family, StabilityChart
+from .maps import FilledMap
+from .plots import STYLE, SYMBOLS
+
+__all__ = ["chart"]
+
+DIVERGENCE = (0, (4, 1.5))
+STABLE_SIDE = ListedColormap(["#cfe8d5"])
+SHADE_PIXELS = 400
+
+
+def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = None) -> Any:
+    """Stability boundaries with their families, the stable side, corners and the design.
+
+    Parameters
+    ----------
+    record : StabilityChart
+    filled : FilledMap or None
+        Drawn below the curves in place of the stable side.
+    axis : matplotlib Axes or None
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    with plt.rc_context(STYLE):
+        if axis is None:
+            _, axis = plt.subplots(figsize=(7.5, 5.6))
+        if filled is None:
+            _shade(axis, record)
+        else:
+            _fill(axis, filled)
+        several = len(record.families) > 1
+        words = "stable" if record.margin == 0 else f"margin of {record.margin:g} 1/s kept"
+        handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color=STABLE_SIDE(1.0))] if filled is None else []
+        labels = [f"{words} in all" if several else words] if filled is None else []
+        colours = (
+            plt.get_cmap("viridis")(np.linspace(0, 0.85, len(record.families)))
+            if several
+            else ["#0b6e99" if filled is None else "black"]
+        )
+        for k, (family, colour) in enumerate(zip(record.families, colours, strict=True)):
+            for curve in family.curves:
+                _draw_curve(axis, curve, colour)
+            handles.append(plt.Line2D([], [], color=colour, lw=1.6))
+            labels.append(_family_words(record, family))
+            if several and family.curves:
+                longest = max(family.curves, key=lambda c: len(c.points))
+                spread = np.linspace(0.3, 0.7, len(record.families))[k]
+                _label(axis, longest.points[int(spread * len(longest.points))], _value_words(record, family), colour)
+        if any((~curve.hopf).any() for family in record.families for curve in family.curves):
+            handles.append(plt.Line2D([], [], color="#333333", lw=1.6, ls=DIVERGENCE))
+            labels.append("divergence (else Hopf)")
+        if record.mark is not None:
+            (star,) = axis.plot(*record.mark, "*", ms=14, color="#e0a100", mec="black", ls="none", clip_on=False)
+            worst = max(family.abscissa for family in record.families if family.abscissa is not None)
+            handles.append(star)
+            labels.append(f"design, abscissa {worst:.3g} 1/s")
+        axis.set(xlim=(record.x.low, record.x.high), ylim=(record.y.low, record.y.high))
+        for setter, a in ((axis.set_xlabel, record.x), (axis.set_ylabel, record.y)):
+            unit = a.unit.replace("^4", "⁴").replace("^2", "²").replace("^3", "³")
+            setter(f"{SYMBOLS.get(a.name, a.name.split('.')[-1].replace('_', ' ').capitalize())} [{unit}]")
+        axis.ticklabel_format(axis="both", style="sci", scilimits=(-3, 4))
+        axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+        held = [("speed", f"{record.speed:g} m/s"), ("vertical_load", f"{record.load / 1e3:g} kN")]
+        names = {record.x.name, record.y.name, record.varied.name if record.varied else ""}
+        axis.set_title("Stability boundary" + "".join(f", {text}" for name, text in held if name not in names), fontsize=10)
+        return axis.figure
+
+
+def _shade(axis: Any, record: StabilityChart) -> None:
+    """The side on which every family keeps the margin."""
+    x, y = (np.linspace(a.low, a.high, 2 * SHADE_PIXELS + 1)[1::2] for a in (record.x, record.y))
+    X, Y = np.meshgrid(x, y)
+    kept = np.all([record.stable(X, Y, k) for k in range(len(record.families))], axis=0)
+    extent = (record.x.low, record.x.high, record.y.low, record.y.high)
+    axis.imshow(np.where(kept, 1.0, np.nan), extent=extent, origin="lower", aspect="auto", cmap=STABLE_SIDE, vmin=0, vmax=1)
+
+
+def _fill(axis: Any, filled: FilledMap) -> None:
+    """Values by colour, white at zero; the colours end at the 90th percentile."""
+    largest = max(float(np.percentile(np.abs(filled.values), 90)), 1e-12)
+    colours = "RdBu_r" if filled.quantity == "abscissa" else "RdBu"
+    image = axis.pcolormesh(filled.x, filled.y, filled.values, cmap=colours, vmin=-largest, vmax=largest, rasterized=True)
+    label = "Spectral abscissa [1/s]" if filled.quantity == "abscissa" else "Least damping ratio [1]"
+    axis.figure.colorbar(image, ax=axis, label=label, extend="both")
+
+
+def _draw_curve(axis: Any, curve: Curve, colour: Any) -> None:
+    """Hopf solid, divergence dashed, a dot where they meet."""
+    segments = curve.hopf[1:] | curve.hopf[:-1]
+    begin = 0
+    for end in [*(np.flatnonzero(segments[1:] != segments[:-1]) + 1), len(segments)]:
+        style = "-" if segments[begin] else DIVERGENCE
+        axis.plot(*curve.points[begin : end + 1].T, color=colour, lw=1.6, ls=style)
+        begin = end
+    axis.plot(*curve.corners.T, "o", ms=4, color="black", ls="none")
+
+
+def _value_words(record: StabilityChart, family: Family) -> str:
+    if record.varied is None or family.value is None:
+        return "boundary"
+    return f"{family.value:.4g}" + (f" {record.varied.unit}" if record.varied.unit != "1" else "")
+
+
+def _family_words(record: StabilityChart, family: Family) -> str:
+    """Value and range of frequencies of a family, for the legend."""
+    frequencies = np.concatenate([curve.frequency[curve.hopf] for curve in family.curves] or [np.zeros(0)])
+    words = _value_words(record, family)
+    if not family.curves:
+        return f"{words}: no boundary, {'stable' if family.origin_stable else 'unstable'} all over"
+    if not frequencies.size:
+        return words
+    low, high = frequencies.min(), frequencies.max()
+    return f"{words}: {low:.3g} Hz" if f"{low:.3g}" == f"{high:.3g}" else f"{words}: {low:.3g} to {high:.3g} Hz"
+
+
+def _label(axis: Any, place: np.ndarray, words: str, colour: Any) -> None:
+    box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
+    axis.text(*place, words, fontsize=8, color=colour, ha="left", va="center", bbox=box)

@@ -35,6 +35,8 @@ EDGES = {
 ROOT = {"xatol": 1e-13, "xrtol": 1e-13}
 SPLIT_ROUNDS = 18
 WINDOW_CELLS = 24
+NEARBY, SPIKES = (0.6, 0.15, 0.03), (2.0, 6.0, 20.0, 60.0)
+"""Of a chord: how far from its middle the boundary is sought, first to both sides, then in the direction of a spike."""
 SEARCHES = 40
 """Local searches for islands smaller than a cell, the most promising first."""
 
@@ -246,30 +248,43 @@ def _refined(excess: Excess, line: np.ndarray, tolerance: float) -> np.ndarray:
     points, open_ = line, np.ones(len(line) - 1, bool)
     for _ in range(SPLIT_ROUNDS):
         at = np.flatnonzero(open_)
+        at = at[np.linalg.norm(points[at + 1] - points[at], axis=1) > tolerance]
+        open_[:] = False
+        low, high, bracketed = _bisectors(excess, points[at], points[at + 1])
+        at = at[bracketed]
         if not at.size:
             break
-        a, b = points[at], points[at + 1]
-        length = np.linalg.norm(b - a, axis=1)
-        middle = (a + b) / 2
-        normal = np.stack([a[:, 1] - b[:, 1], b[:, 0] - a[:, 0]], axis=1) / np.where(length == 0, 1, length)[:, None]
-        reach = 0.6 * length[:, None] * normal
-        low, high = np.clip(middle - reach, 0, 1), np.clip(middle + reach, 0, 1)
-        bracketed = (excess(low[:, 0], low[:, 1]) < 0) != (excess(high[:, 0], high[:, 1]) < 0)
-        bracketed &= length > tolerance
-        open_[at[~bracketed]] = False
-        at, low, high, middle, a, b = (
-            at[bracketed],
-            low[bracketed],
-            high[bracketed],
-            middle[bracketed],
-            a[bracketed],
-            b[bracketed],
-        )
-        if not at.size:
-            break
-        found = _roots(excess, low, high)
-        far = np.linalg.norm(found - middle, axis=1) > tolerance
+        found = _roots(excess, low[bracketed], high[bracketed])
+        far = np.linalg.norm(found - (points[at] + points[at + 1]) / 2, axis=1) > tolerance
         open_[at] = far  # both halves of what was far are looked at again
         points = np.insert(points, at + 1, found, axis=0)
         open_ = np.insert(open_, at + 1, far)
     return points
+
+
+def _bisectors(excess: Excess, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Ends (m, 2) of segments on the bisectors of chords between which the sign changes, and whether there are such.
+
+    Where it does not nearby, the chord may cut off a spike: its middle lies inside, and the boundary on one side, further off.
+    """
+    middle, chord = (a + b) / 2, b - a
+    normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1)
+    low, high, bracketed = middle.copy(), middle.copy(), np.zeros(len(a), bool)
+    for reach in NEARBY:
+        left = np.flatnonzero(~bracketed)
+        if not left.size:
+            break
+        low[left], high[left] = (np.clip(middle[left] + sign * reach * normal[left], 0, 1) for sign in (-1, 1))
+        bracketed[left] = (excess(*low[left].T) < 0) != (excess(*high[left].T) < 0)
+    for reach in SPIKES:
+        left = np.flatnonzero(~bracketed)
+        if not left.size:
+            break
+        inside = excess(*middle[left].T) < 0
+        ends = [np.clip(middle[left] + sign * reach * normal[left], 0, 1) for sign in (-1, 1)]
+        changes = [(excess(*end.T) < 0) != inside for end in ends]
+        one = changes[0] != changes[1]
+        low[left[one]] = middle[left[one]]
+        high[left[one]] = np.where(changes[0][one, None], ends[0][one], ends[1][one])
+        bracketed[left[one]] = True
+    return low, high, bracketed

@@ -86,3 +86,12 @@ def test_cost_grows_with_the_length_and_slowly_with_the_tolerance():
 
     assert beyond_the_grid(0.4, 1e-5) < 2.3 * beyond_the_grid(0.2, 1e-5)
     assert beyond_the_grid(0.4, 1e-8) < 15 * beyond_the_grid(0.4, 1e-6)
+
+
+@pytest.mark.parametrize("angle", [40.0, 80.0, 140.0])
+def test_tip_of_a_wedge_is_met_to_the_tolerance(angle):
+    """A wedge with its tip at (0.31, 0.64); sharper ones may lose part of a fine cell, as the theory page says."""
+    slope = np.tan(np.deg2rad(angle / 2))
+    lines = trace(lambda u, v: np.abs(v - 0.64) - slope * (u - 0.31), tolerance=1e-6)
+    points = np.vstack([line.points for line in lines])
+    assert np.hypot(points[:, 0] - 0.31, points[:, 1] - 0.64).min() < 1e-5 / slope

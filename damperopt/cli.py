@@ -39,6 +39,7 @@ from .run_files import draw_modes, write_chart_files, write_design
 from .simulate import Simulator
 from .specs import Study
 from .stability import linear_gear
+from .thesis import thesis_gear, write_thesis
 from .trajectory import motion_of
 from .variables import DESIGN_VARIABLES, TOPOLOGIES
 from .worst import worst_points
@@ -302,6 +303,15 @@ def chart(
     write_run(folder, lambda place: write_chart_files(place, record, filled))
     summary.show_chart(out, record)
     out.print(f"\nResults in {folder}", soft_wrap=True)
+
+
+@app.command()
+def thesis(output: OutputOption = None) -> None:
+    """Draw the stability charts of C. Arreaza's thesis, and put what its text says of them to the numbers."""
+    study = thesis_gear()
+    folder = run_folder(output, "thesis")
+    write_run(folder, lambda place: summary.show_claims(out, write_thesis(place, study)))
+    out.print(f"\nOpen {folder / 'index.html'}", soft_wrap=True)
 
 
 @app.command()

@@ -14,9 +14,10 @@ from .chart import StabilityChart
 from .critical import CriticalSpeed
 from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
+from .thesis import Verdict
 from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
-__all__ = ["show_analysis", "show_chart", "show_design", "show_motion", "show_ranking"]
+__all__ = ["show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
 
 SHOWN_PEAKS = (
     "yaw_angle",
@@ -195,3 +196,14 @@ def show_chart(console: Console, record: StabilityChart) -> None:
         f"Traced to {record.tolerance:g} of the ranges with {looked} eigenvalue problems; islands smaller than "
         f"{record.cell:.3g} of the ranges may be missed."
     )
+
+
+def show_claims(console: Console, rows: Sequence[tuple[str, str, str, Verdict]]) -> None:
+    """Claims of the thesis with their verdicts, one row for each figure and geometry."""
+    table = Table(box=None, pad_edge=False)
+    for name in ("figure", "geometry", "claim", "", "numbers"):
+        table.add_column(name)
+    for number, geometry, text, verdict in rows:
+        table.add_row(number, geometry, text, "agrees" if verdict.agrees else "differs", verdict.reason)
+    console.print(table)
+    console.print(f"{sum(verdict.agrees for *_, verdict in rows)} of {len(rows)} agree")

@@ -7,6 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
+from matplotlib.ticker import EngFormatter
 
 from .chart import Curve, Family, StabilityChart
 from .maps import FilledMap
@@ -110,6 +111,10 @@ def _draw_curve(axis: Any, curve: Curve, colour: Any) -> None:
 def _value_words(record: StabilityChart, family: Family) -> str:
     if record.varied is None or family.value is None:
         return "boundary"
+    if record.varied.unit == "rad":
+        return f"{np.degrees(family.value):.4g} deg"
+    if record.varied.unit in ("Pa", "N", "m"):
+        return str(EngFormatter(record.varied.unit)(family.value))
     return f"{family.value:.4g}" + (f" {record.varied.unit}" if record.varied.unit != "1" else "")
 
 

@@ -34,6 +34,9 @@ GEOMETRIES = ("published", "planar")
 LEVELS = np.linspace(0.1, 0.9, 17)
 """Fractions of the vertical axis at which curves are compared."""
 
+PRINTED_TOO_LITTLE = 5.0
+"""The printed damping of UTAS is 5.4 times less than that by virtual work (erratum 8)."""
+
 ALIKE, NEAR_ZERO = 0.02, 1e-4
 
 
@@ -167,7 +170,7 @@ _SIDES = ("b", (0.1, 0.2, 0.3))
 _MODULI = ("material.youngs_modulus", (70e9, 140e9, 200e9))
 _CASTER = ("speed", 1.0, 200.0), ("caster_length", -0.2, 0.5)
 _BOEING = ("c_lambda", 0.0, 3e4), ("k_lambda", 0.0, 1e7)
-_UTAS = ("c_lambda", 0.0, 1e6), ("I_arm", 0.0, 1e-5)
+_UTAS = ("c_lambda", 0.0, 6e5), ("I_arm", 0.0, 1e-5)
 _NEW = ("c_lambda", 0.0, 4e4), ("I_arm", 0.0, 1e-5)
 
 FASTER = Claim("The higher the velocity the more stable, for positive caster.", _faster_is_stabler)
@@ -233,7 +236,10 @@ def trace_figure(figure: ThesisFigure, study: Study, geometry: str) -> Stability
     caption = {"L": 0.6, "gamma": float(np.deg2rad(31.0)), "b": 0.2, "c_lambda": 1e3, "I_arm": 5e-6, "k_lambda": 3.8e6}
     design = {name: value for name, value in {**caption, **figure.design}.items() if name in gear.start}
     gear = gear.replace(**{f"design__{name}__start": value for name, value in design.items()})
-    return chart(gear, figure.x, figure.y, vary=figure.vary, speed=figure.speed, load=150e3)
+    name, low, high = figure.x
+    if figure.topology == "utas" and name == "c_lambda" and geometry != "published":
+        high /= PRINTED_TOO_LITTLE  # so that the curves fill the figure
+    return chart(gear, (name, low, high), figure.y, vary=figure.vary, speed=figure.speed, load=150e3)
 
 
 def write_thesis(place: Path, study: Study) -> list[tuple[str, str, str, Verdict]]:

@@ -100,7 +100,7 @@ def _example(kind: str) -> str:
 def _in_words(problem: Any) -> str:
     kind, *rest = (str(step) for step in problem["loc"])
     if problem["type"] == "extra_forbidden":
-        names = Disturbance.model_fields[kind].annotation.__args__[0].model_fields  # type: ignore[union-attr]
+        names = Disturbance.model_fields[kind].annotation.__args__[0].model_fields  # type: ignore[union-attr]  # Block | None
         return f"--{kind}: '{rest[0]}' is unknown; allowed: {', '.join(names)}"
     return f"--{kind}: {' '.join([*rest, problem['msg']])}"
 

@@ -62,6 +62,9 @@ ConfigArgument = Annotated[Path, typer.Argument(metavar="CONFIG", help="Study, a
 OutputOption = Annotated[
     Path | None, typer.Option("-o", "--output", metavar="DIR", help="New folder for the results. [default: runs/NAME-DATE]")
 ]
+DesignOption = Annotated[
+    Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
+]
 
 
 _interrupts: list[int] = []
@@ -163,9 +166,7 @@ def optimise(
 @app.command()
 def analyse(
     file: ConfigArgument,
-    design: Annotated[
-        Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
-    ] = None,
+    design: DesignOption = None,
     speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table in m/s. [default: envelope]")] = "",
     output: OutputOption = None,
 ) -> None:
@@ -203,9 +204,7 @@ def analyse(
 def simulate(
     file: ConfigArgument,
     speed: Annotated[str, typer.Option(help="Speed in m/s, such as 40, or '120 kt'.")],
-    design: Annotated[
-        Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
-    ] = None,
+    design: DesignOption = None,
     load: Annotated[str, typer.Option(help="Vertical load [N]. [default: the largest of the envelope]")] = "",
     release: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw, bending or string let go.")] = None,
     kick: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw or bending rate at the start.")] = None,
@@ -279,6 +278,11 @@ def chart(
     values = None
     if design is not None:
         study, values = _with_design(study, load_result(design), file, design)
+    if fill not in ("", "abscissa", "damping") or (fill and vary):
+        raise ConfigError(
+            f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"
+        )
+    folder = run_folder(output, f"{file.stem}-chart")
     record = trace_chart(
         study,
         axis_range(x, study, "--x"),
@@ -291,15 +295,10 @@ def chart(
         cells=cells,
         tolerance=tolerance,
     )
-    if fill not in ("", "abscissa", "damping") or (fill and vary):
-        raise ConfigError(
-            f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"
-        )
-    folder = run_folder(output, f"{file.stem}-chart")
     filled = None
     if fill:
         plane = Plane(study, record.x, record.y, record.design, record.speed, record.load, record.margin)
-        filled = filled_map(plane, fill)  # type: ignore[arg-type]
+        filled = filled_map(plane, fill)  # type: ignore[arg-type]  # one of the two, checked above
     write_run(folder, lambda place: write_chart_files(place, record, filled))
     summary.show_chart(out, record)
     out.print(f"\nResults in {folder}", soft_wrap=True)

@@ -111,10 +111,9 @@ def _equations(
     M_load = F_z * ca.sin(phi) * e_eff * ca.sin(theta)
 
     torque = damper.torque - e_eff * F_y - M_z - M_kappa + M_load + yaw_torque
-    friction = 0 if gear.friction is None else elements.sign("friction", psi_t, gear.friction.smoothing)
     psi_tt = torque / gear.yaw_inertia
     if gear.friction is not None:
-        psi_tt -= gear.friction.torque * friction / gear.yaw_inertia
+        psi_tt -= gear.friction.torque * elements.sign("friction", psi_t, gear.friction.smoothing) / gear.yaw_inertia
     y_t = V * ca.sin(theta) + (e_eff - a) * psi_t * ca.cos(theta) * ca.cos(phi) - V / sigma * y * ca.cos(theta)
     outputs = {
         "linkage_torque": damper.torque,

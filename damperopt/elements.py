@@ -58,7 +58,7 @@ class Linear:
 
 
 class _Cornered:
-    """Dead bands out of |x| and its slope."""
+    """Dead bands out of |x| and its slope; `Smooth` and `Switched` say what these two are."""
 
     def absolute(self, name: str, x: Any, width: Any) -> Any:
         raise NotImplementedError

@@ -154,6 +154,7 @@ class _Fast:
         self._buffer, self._evaluate = function.buffer()
         self._in = [np.zeros(e.numel()) for e in inputs]
         self._out = [np.zeros(e.numel()) for e in outputs]
+        # the stubs of CasADi declare neither memoryviews nor both arguments
         for k, array in enumerate(self._in):
             self._buffer.set_arg(k, memoryview(array))  # type: ignore[arg-type, call-arg]
         for k, array in enumerate(self._out):
@@ -264,7 +265,7 @@ class _Run:
         functions = [corner(i) for i in range(self._model.corners)]
         functions += [grip] if self._model.friction_torque else []
         for function in functions:
-            function.terminal, function.direction = True, -1  # type: ignore[attr-defined]
+            function.terminal, function.direction = True, -1  # type: ignore[attr-defined]  # how SciPy is told
         return functions
 
     def _cross(self, t: float, x: np.ndarray, passed: list[int]) -> None:

@@ -260,10 +260,15 @@ def side(xs, ys, out):
 """
 
 
+def _coefficient_lines(coefficients: ca.Function) -> str:
+    """Body of a loop that fills a[1], ..., a[n] from x and y."""
+    lines, values = _lines(coefficients, [["x"], ["y"]], "v")
+    return "\n            ".join([*lines, *(f"a[{k + 1}] = {value}" for k, value in enumerate(values))])
+
+
 def _abscissa_source(coefficients: ca.Function, certificate: ca.Function) -> str:
     n = coefficients.nnz_out(0)
-    lines, values = _lines(coefficients, [["x"], ["y"]], "v")
-    body = "\n            ".join([*lines, *(f"a[{k + 1}] = {value}" for k, value in enumerate(values))])
+    body = _coefficient_lines(coefficients)
     shift, outputs = _lines(certificate, [[f"a[{k + 1}]" for k in range(n)], ["sigma"]], "w")
     check = "\n    ".join(shift)
     return f"""
@@ -294,8 +299,7 @@ def abscissae(xs, ys, out):
 
 def _damping_source(coefficients: ca.Function) -> str:
     n = coefficients.nnz_out(0)
-    lines, values = _lines(coefficients, [["x"], ["y"]], "v")
-    body = "\n            ".join([*lines, *(f"a[{k + 1}] = {value}" for k, value in enumerate(values))])
+    body = _coefficient_lines(coefficients)
     return f"""
 def dampings(xs, ys, out):
     for j in prange(ys.size):

@@ -172,7 +172,7 @@ def _number(value: float, unit: str) -> tuple[str, str]:
 def show_chart(console: Console, record: StabilityChart) -> None:
     """Families of a chart with the length, kind and frequency of their curves."""
     table = Table(box=None, pad_edge=False)
-    varied = record.varied.name if record.varied else "boundary"
+    varied, unit = (record.varied.name, record.varied.unit) if record.varied else ("boundary", "")
     for name in (varied, "curves", "points", "type", "frequency", "corners"):
         table.add_column(name, justify="left" if name in (varied, "type") else "right")
     for family in record.families:
@@ -180,7 +180,7 @@ def show_chart(console: Console, record: StabilityChart) -> None:
         frequency = np.concatenate([c.frequency for c in family.curves] or [np.zeros(0)])[hopf]
         kinds = [word for word, there in (("Hopf", hopf.any()), ("divergence", (~hopf).any())) if there]
         everywhere = "stable" if family.origin_stable else "unstable"
-        value = "" if family.value is None else f"{family.value:g} {record.varied.unit}"  # type: ignore[union-attr]
+        value = "" if family.value is None else f"{family.value:g} {unit}"
         band = f"{frequency.min():.3g} to {frequency.max():.3g} Hz" if frequency.size else ""
         corners = sum(len(c.corners) for c in family.curves)
         table.add_row(
@@ -189,7 +189,7 @@ def show_chart(console: Console, record: StabilityChart) -> None:
     console.print(table)
     for family in record.families:
         if family.abscissa is not None:
-            where = "" if family.value is None else f" at {family.value:g} {record.varied.unit}"  # type: ignore[union-attr]
+            where = "" if family.value is None else f" at {family.value:g} {unit}"
             console.print(f"Spectral abscissa of the design{where}: {family.abscissa:.6g} 1/s")
     looked = sum(family.evaluations for family in record.families)
     console.print(

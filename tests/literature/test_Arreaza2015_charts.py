@@ -72,3 +72,12 @@ def test_the_page_shows_every_figure(gear, tmp_path, monkeypatch):
             assert f"figure-{figure.number}-{geometry}.png" in page
             assert (tmp_path / f"figure-{figure.number}-{geometry}.png").stat().st_size > 10_000
     assert page.count("Agrees") + page.count("Differs") == 6
+
+
+def test_changelog_counts_the_verdicts():
+    from pathlib import Path
+
+    text = " ".join((Path(__file__).parents[2] / "CHANGELOG.md").read_text().split())
+    verdicts = [agrees for figure in EXPECTED.values() for agrees in figure] * len(GEOMETRIES)
+    assert f"{len(verdicts) // len(GEOMETRIES)} claims" in text
+    assert f"{sum(verdicts)} of the {len(verdicts)} agree" in text

@@ -238,8 +238,9 @@ def simulate(
     run = ExactSimulator(study, values) if engine == "exact" else Simulator(study, values, engine)
     try:
         motion = run(at_speed, at_load, disturbance, seconds)
-    except KeyboardInterrupt:
-        raise Interrupted("interrupted; nothing was written") from None
+    except (KeyboardInterrupt, SystemError):  # the latter where a wrapped library was interrupted between two calls
+        if not _interrupts:
+            raise
     if _interrupts:
         raise Interrupted("interrupted; nothing was written")
     found = motion_of(motion, required.cycles if required else 3)

@@ -146,6 +146,7 @@ def chart(
     load: float | None = None,
     cells: int = 48,
     tolerance: float = 1e-5,
+    plane_type: type[Plane] = Plane,
 ) -> StabilityChart:
     """Trace the boundary of a stability margin in a plane of two quantities.
 
@@ -167,6 +168,8 @@ def chart(
         Coarse cells along each axis.
     tolerance : float
         Distance between chords and boundary, in fractions of the ranges.
+    plane_type : type
+        What gives the matrices of the plane.
 
     Returns
     -------
@@ -186,7 +189,7 @@ def chart(
     values = {**study.start, **(design or {})}
     speed = study.envelope.speed.max if speed is None else speed
     load = max(study.envelope.loads) if load is None else load
-    plane = Plane(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin)
+    plane = plane_type(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin)
     varied: Axis | None = None
     families: list[float | None] = [None] if vary is None else list(vary[1])
     if vary is not None:

@@ -18,6 +18,8 @@ __all__ = ["chart"]
 DIVERGENCE = (0, (4, 1.5))
 STABLE_SIDE = ListedColormap(["#cfe8d5"])
 SHADE_PIXELS = 400
+LABEL_EDGE, LABEL_SHAPE = 0.06, np.array([1.0, 2.5])
+"""Part of the axes without labels, and how much less high than wide a label is."""
 
 
 def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = None) -> Any:
@@ -46,19 +48,17 @@ def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = N
         handles: list[Any] = [plt.Rectangle((0, 0), 1, 1, color=STABLE_SIDE(1.0))] if filled is None else []
         labels = [f"{words} in all" if several else words] if filled is None else []
         colours = (
-            plt.get_cmap("viridis")(np.linspace(0, 0.85, len(record.families)))
+            plt.get_cmap("viridis")(np.linspace(0, 0.7, len(record.families)))
             if several
             else ["#0b6e99" if filled is None else "black"]
         )
-        for k, (family, colour) in enumerate(zip(record.families, colours, strict=True)):
+        for family, colour in zip(record.families, colours, strict=True):
             for curve in family.curves:
                 _draw_curve(axis, curve, colour)
             handles.append(plt.Line2D([], [], color=colour, lw=1.6))
             labels.append(_family_words(record, family))
-            if several and family.curves:
-                longest = max(family.curves, key=lambda c: len(c.points))
-                spread = np.linspace(0.3, 0.7, len(record.families))[k]
-                _label(axis, longest.points[int(spread * len(longest.points))], _value_words(record, family), colour)
+        if several:
+            _label_families(axis, record, colours)
         if any((~curve.hopf).any() for family in record.families for curve in family.curves):
             handles.append(plt.Line2D([], [], color="#333333", lw=1.6, ls=DIVERGENCE))
             labels.append("divergence (else Hopf)")
@@ -130,6 +130,26 @@ def _family_words(record: StabilityChart, family: Family) -> str:
     return f"{words}: {low:.3g} Hz" if f"{low:.3g}" == f"{high:.3g}" else f"{words}: {low:.3g} to {high:.3g} Hz"
 
 
-def _label(axis: Any, place: np.ndarray, words: str, colour: Any) -> None:
+def _label_families(axis: Any, record: StabilityChart, colours: Any) -> None:
+    """A label on each family where it is farthest from the curves of the others and from the labels before it."""
+    low, span = np.array([record.x.low, record.y.low]), np.array([record.x.high - record.x.low, record.y.high - record.y.low])
+    points = [
+        np.concatenate([(curve.points - low) / span for curve in family.curves] or [np.zeros((0, 2))])
+        for family in record.families
+    ]
+    labels: list[np.ndarray] = []
     box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
-    axis.text(*place, words, fontsize=8, color=colour, ha="left", va="center", bbox=box)
+    for k, own in enumerate(points):
+        inside = own[((own > LABEL_EDGE) & (own < 1 - LABEL_EDGE)).all(axis=1)]
+        if not len(inside):
+            continue
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(inside, axis=0), axis=1))])
+        candidates = inside[np.searchsorted(along, np.linspace(0, along[-1], 40))]
+        taken = np.concatenate([*(p for j, p in enumerate(points) if j != k), *(label[None] for label in labels)])
+        distance = (
+            np.linalg.norm((candidates[:, None] - taken) * LABEL_SHAPE, axis=2).min(axis=1) if len(taken) else np.ones(len(candidates))
+        )
+        place = candidates[distance.argmax()]
+        labels.append(place)
+        words = _value_words(record, record.families[k])
+        axis.text(*(low + span * place), words, fontsize=8, color=colours[k], ha="center", va="center", bbox=box)

@@ -23,7 +23,8 @@ from .decay import decay_analysis
 from .diagnose import diagnose
 from .errors import ConfigError
 from .exchange import EnvelopeSolution, best_local, held_again
-from .multistart import StartOutcome, executor, run_starts, solver_for, starting_designs
+from .multistart import StartOutcome, run_starts, solver_for, starting_designs
+from .pool import executor
 from .problem import ROD, DesignProblem
 from .provenance import provenance_of
 from .results import (

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,7 +16,7 @@ from .specs import Study
 HOPELESS = 3
 """Sobol starts that are still tried where the scan finds no design."""
 
-__all__ = ["StartOutcome", "executor", "run_starts", "solver_for", "starting_designs"]
+__all__ = ["StartOutcome", "run_starts", "solver_for", "starting_designs"]
 
 
 @dataclass(frozen=True)
@@ -96,31 +93,3 @@ def run_starts(study: Study, pool: Executor | None, progress: Callable[[int, int
         if progress:
             progress(len(found), total)
     return found
-
-
-@contextmanager
-def executor(workers: int) -> Iterator[Executor | None]:
-    """Pool of worker processes, or None for a single worker; an interrupt ends them at once.
-
-    Parameters
-    ----------
-    workers : int
-    """
-    if workers <= 1:
-        yield None
-        return
-    methods = multiprocessing.get_all_start_methods()
-    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    if "forkserver" in methods:
-        context.set_forkserver_preload(["damperopt.design"])  # casadi is imported once, not once per worker
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt)
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    pool.shutdown()
-
-
-def _ignore_interrupt() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle

@@ -14,7 +14,7 @@ from .chart import StabilityChart
 from .critical import CriticalSpeed
 from .results import UNITS, Certificate, DesignResult, OperatingPoint
 from .specs import Study
-from .thesis import Verdict
+from .thesis import Row
 from .trajectory import TRAJECTORY_UNITS, Motion, Trajectory
 
 __all__ = ["show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
@@ -198,12 +198,18 @@ def show_chart(console: Console, record: StabilityChart) -> None:
     )
 
 
-def show_claims(console: Console, rows: Sequence[tuple[str, str, str, Verdict]]) -> None:
-    """Claims of the thesis with their verdicts, one row for each figure and geometry."""
+def show_claims(console: Console, rows: Sequence[Row]) -> None:
+    """Claims of the thesis: a row each, a column for every form of the figures."""
+    forms = list(dict.fromkeys(row.form for row in rows))
     table = Table(box=None, pad_edge=False)
-    for name in ("figure", "geometry", "claim", "", "numbers"):
+    for name in ("figure", "the text", *forms):
         table.add_column(name)
-    for number, geometry, text, verdict in rows:
-        table.add_row(number, geometry, text, "agrees" if verdict.agrees else "differs", verdict.reason)
+    found: dict[tuple[str, str], dict[str, str]] = {}
+    for row in rows:
+        found.setdefault((row.figure, row.claim), {})[row.form] = "agrees" if row.verdict.agrees else "differs"
+    for (number, claim), verdicts in found.items():
+        table.add_row(number, claim, *(verdicts.get(form, "") for form in forms))
     console.print(table)
-    console.print(f"{sum(verdict.agrees for *_, verdict in rows)} of {len(rows)} agree")
+    for form in forms:
+        agreed = [row.verdict.agrees for row in rows if row.form == form]
+        console.print(f"{form}: {sum(agreed)} of {len(agreed)} agree")

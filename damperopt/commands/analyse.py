@@ -1,0 +1,58 @@
+"""Stability of a given design."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import config, summary
+from ..arguments import speed_grid
+from ..certify import certify
+from ..critical import critical_speeds
+from ..modes import track_modes
+from ..output import run_folder, write_modes, write_run
+from ..results import load_result
+from ..run_files import draw_modes
+from ..stability import linear_gear
+from ..worst import worst_points
+from .shared import ConfigArgument, DesignOption, OutputOption, out, with_design
+
+__all__ = ["analyse"]
+
+
+def analyse(
+    file: ConfigArgument,
+    design: DesignOption = None,
+    speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table in m/s. [default: envelope]")] = "",
+    output: OutputOption = None,
+) -> None:
+    """Modes over speed, critical speeds and the exact certificate of a given design."""
+    study = config.load(file)
+    values = None
+    if design is not None:
+        study, values = with_design(study, load_result(design), file, design)
+    grid = speed_grid(speeds, study)
+    folder = run_folder(output, f"{file.stem}-analysis")
+    gear = linear_gear(study, values)
+    tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
+    margin = study.required.stability_margin if study.requirements else 0.0
+    low, high = float(grid[0]), float(grid[-1])
+    if values is None:
+        values = study.start
+    summary.show_analysis(
+        out,
+        study,
+        values,
+        critical=[c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)],
+        worst=worst_points(gear, study.envelope)[0],
+        certificates=[certify(study, values, level) for level in dict.fromkeys((0.0, margin))],
+    )
+
+    def write(place: Path) -> None:
+        write_modes(place / "modes.csv", tables)
+        draw_modes(place, tables, margin)
+
+    write_run(folder, write)
+    out.print(f"\nResults in {folder}", soft_wrap=True)

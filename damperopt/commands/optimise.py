@@ -1,0 +1,80 @@
+"""Find the lightest damper."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import config, summary
+from ..arguments import choices
+from ..design import combinations, optimise_each, rank
+from ..errors import Interrupted
+from ..materials import MATERIALS
+from ..output import run_folder, write_ranking, write_run
+from ..results import DesignResult
+from ..run_files import write_design
+from ..variables import TOPOLOGIES
+from .shared import ConfigArgument, OutputOption, err, out, progress, workers_for
+
+__all__ = ["optimise"]
+
+
+def optimise(
+    file: ConfigArgument,
+    topology: Annotated[str, typer.Option(help=f"{', '.join(TOPOLOGIES)}, a comma list of them, or all.")] = "",
+    material: Annotated[str, typer.Option(help="A material of the library, a comma list, or all.")] = "",
+    output: OutputOption = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core; one alone for few starts]")
+    ] = None,
+    figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
+) -> None:
+    """Find the lightest damper that is stable with the margin over the whole envelope, and prove it.
+
+    Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
+    """
+    study = config.load(file)
+    topologies = choices(topology, TOPOLOGIES, "--topology")
+    materials = choices(material, tuple(MATERIALS), "--material")
+    studies = combinations(study, topologies, materials)
+    folder = run_folder(output, file.stem)
+
+    results: list[DesignResult] = []
+    interrupted = False
+    with progress() as report:
+        try:
+            for result in optimise_each(studies, workers=workers or workers_for(studies), progress=report, config_file=file):
+                results.append(result)
+        except KeyboardInterrupt:
+            if not results:
+                raise Interrupted("interrupted; nothing was finished, nothing was written") from None
+            interrupted = True
+
+    ordered = rank(results)
+    by_combination = {(str(s.damper.topology), s.material.name): s for s in studies}
+
+    def write(place: Path) -> None:
+        shutil.copyfile(file, place / "config.yaml")
+        if len(studies) == 1:
+            write_design(place, studies[0], ordered[0], figures)
+            return
+        write_ranking(place / "ranking.csv", ordered)
+        for position, result in enumerate(ordered, 1):
+            own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
+            own.mkdir()
+            write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
+
+    write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
+    if len(studies) == 1:
+        summary.show_design(out, ordered[0])
+    else:
+        summary.show_ranking(out, ordered)
+    out.print(f"\nResults in {folder}", soft_wrap=True)
+    if interrupted:
+        err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
+        raise typer.Exit(Interrupted.exit_code)
+    codes = {result.exit_code for result in results}
+    raise typer.Exit(4 if 4 in codes else 0 if 0 in codes else 3)

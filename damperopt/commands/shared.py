@@ -1,0 +1,114 @@
+"""What the commands share: consoles, options, progress, interrupts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from ..errors import ConfigError, Interrupted
+from ..pool import cores
+from ..results import DesignResult
+from ..specs import Study
+from ..variables import DESIGN_VARIABLES
+
+__all__ = [
+    "ConfigArgument",
+    "DesignOption",
+    "OutputOption",
+    "all_or_nothing",
+    "bar",
+    "err",
+    "out",
+    "pressed",
+    "progress",
+    "with_design",
+    "workers_for",
+]
+
+FEW_STARTS = 24
+
+# no emoji: 5:100:1 is a range of speeds
+out, err = Console(highlight=False, emoji=False), Console(stderr=True, highlight=False, emoji=False)
+
+ConfigArgument = Annotated[Path, typer.Argument(metavar="CONFIG", help="Study, a YAML file.")]
+OutputOption = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="DIR", help="New folder for the results. [default: runs/NAME-DATE]")
+]
+DesignOption = Annotated[
+    Path | None, typer.Option(help="result.json of 'optimise', or its folder. [default: the starts of the study]")
+]
+
+
+pressed: list[int] = []
+"""Ctrl-C that was pressed: now and then a library swallows the exception, and its answer must not pass for a whole one."""
+
+
+@contextmanager
+def all_or_nothing() -> Iterator[None]:
+    """Work that leaves nothing behind when it is interrupted."""
+    try:
+        yield
+    except (KeyboardInterrupt, SystemError):  # the latter where a wrapped library was interrupted between two calls
+        if not pressed:
+            raise
+    if pressed:
+        raise Interrupted("interrupted; nothing was written")
+
+
+@contextmanager
+def bar() -> Iterator[Progress]:
+    """Progress on the error stream, gone when done."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=err, transient=True) as shown:
+        yield shown
+
+
+@contextmanager
+def progress() -> Iterator:
+    """Report of finished starts by study."""
+    with bar() as shown:
+        task = shown.add_task("starting", total=None)
+
+        def report(done: int, total: int, study: Study) -> None:
+            shown.update(task, completed=done, total=total, description=f"{study.damper.topology}, {study.material.name}")
+
+        yield report
+
+
+def workers_for(studies: Sequence[Study]) -> int:
+    """One process per core, or one alone for few starts: new processes take as long to start as 20 starts to solve."""
+    if sum(study.solver.starts for study in studies) <= FEW_STARTS:
+        return 1
+    return cores()
+
+
+def with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
+    """The study with the layout and material that the result was made for, and its design."""
+    names = DESIGN_VARIABLES.get(result.topology, ())
+    if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):
+        raise ConfigError(
+            f"{source}:1: design: found {result.design or 'none'} (status {result.status}); "
+            f"allowed: a result with positive {', '.join(names) or 'design variables'}"
+        )
+    changes = {
+        "damper__topology": result.topology,
+        "damper__geometry": result.geometry,
+        "material": result.config.get("material", study.material.name),
+    }
+    out.print(
+        f"Layout ({result.topology}, {result.geometry}) and material ({result.material}) are those of {source}; "
+        f"all else is that of {file}.",
+        soft_wrap=True,
+        markup=False,
+    )
+    try:
+        return study.replace(**changes), result.design
+    except ConfigError as error:
+        raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None

@@ -18,8 +18,8 @@ __all__ = ["chart"]
 DIVERGENCE = (0, (4, 1.5))
 STABLE_SIDE = ListedColormap(["#cfe8d5"])
 SHADE_PIXELS = 400
-LABEL_EDGE, LABEL_SHAPE = 0.06, np.array([1.0, 2.5])
-"""Part of the axes without labels, and how much less high than wide a label is."""
+LABEL_EDGE, LABEL_SHAPE, LABEL_ROOM = 0.06, np.array([1.0, 2.5]), (0.05, 0.15)
+"""Part of the axes without labels; how much less high than wide a label is; room that it wants to curves and to labels."""
 
 
 def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = None) -> Any:
@@ -145,11 +145,18 @@ def _label_families(axis: Any, record: StabilityChart, colours: Any) -> None:
             continue
         along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(inside, axis=0), axis=1))])
         candidates = inside[np.searchsorted(along, np.linspace(0, along[-1], 40))]
-        taken = np.concatenate([*(p for j, p in enumerate(points) if j != k), *(label[None] for label in labels)])
-        distance = (
-            np.linalg.norm((candidates[:, None] - taken) * LABEL_SHAPE, axis=2).min(axis=1) if len(taken) else np.ones(len(candidates))
+        others = np.concatenate([p for j, p in enumerate(points) if j != k])
+        free = _distance(candidates, others, LABEL_ROOM[0]) + 2 * _distance(
+            candidates, np.array(labels).reshape(-1, 2), LABEL_ROOM[1]
         )
-        place = candidates[distance.argmax()]
+        place = candidates[free.argmax()]
         labels.append(place)
         words = _value_words(record, record.families[k])
         axis.text(*(low + span * place), words, fontsize=8, color=colours[k], ha="center", va="center", bbox=box)
+
+
+def _distance(points: np.ndarray, others: np.ndarray, enough: float) -> np.ndarray:
+    """Distance (m,) to the nearest of others, in parts of what is enough and at most 1."""
+    if not len(others):
+        return np.ones(len(points))
+    return np.minimum(np.linalg.norm((points[:, None] - others) * LABEL_SHAPE, axis=2).min(axis=1) / enough, 1)

@@ -10,13 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
-from .commands.analyse import analyse
-from .commands.chart import chart
-from .commands.optimise import optimise
+from .commands import analyse, chart, init, optimise, schema, simulate, thesis, validate
 from .commands.shared import err, out, pressed
-from .commands.simulate import simulate
-from .commands.studies import init, schema, validate
-from .commands.thesis import thesis
 from .errors import DamperoptError
 
 __all__ = ["app", "main"]

@@ -1,1 +1,10 @@
 """Commands of the command line, a file each."""
+
+from .analyse import analyse
+from .chart import chart
+from .optimise import optimise
+from .simulate import simulate
+from .studies import init, schema, validate
+from .thesis import thesis
+
+__all__ = ["analyse", "chart", "init", "optimise", "schema", "simulate", "thesis", "validate"]

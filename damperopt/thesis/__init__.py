@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from .charts import FIGURES, FORMS, ThesisFigure, needed_damping, thesis_gear, trace_figure
-from .claims import CHART_CLAIMS, RESPONSE_CLAIMS, Claim, Verdict
+from .claims import CHART_CLAIMS, Claim, Verdict
 from .page import RESPONSE_FORMS, Row, judge, panels, write_thesis
+from .response_claims import RESPONSE_CLAIMS
 from .responses import RESPONSES, Response, ThesisResponse, respond
 
 __all__ = [

@@ -34,7 +34,9 @@ def response(figure: ThesisResponse, found: Sequence[Response]) -> Any:
         for axis, one, colour in zip(axes[:, 0], found, colours, strict=True):
             shown = one.trajectory.time <= figure.shown
             axis.plot(one.trajectory.time[shown], one.trajectory["yaw_angle"][shown], lw=0.8, color=colour)
-            axis.set_title(f"{_values(one)}: {one.motion.kind}{_amplitude(one)}", fontsize=9, loc="left")
+            axis.set_title(
+                f"{_values(one)}: {one.motion.kind}{_amplitude(one)}; linear {one.abscissa:.2g} 1/s", fontsize=9, loc="left"
+            )
             axis.margins(x=0)
         drawn.supylabel("Yaw angle [rad]", fontsize=10)
         axes[-1, 0].set_xlabel("Time [s]")

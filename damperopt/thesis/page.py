@@ -15,7 +15,8 @@ import numpy as np
 from ..chart import StabilityChart
 from ..specs import Study
 from .charts import FIGURES, FORMS, ThesisFigure, misprints, trace_figure
-from .claims import CHART_CLAIMS, RESPONSE_CLAIMS, Claim, Verdict
+from .claims import CHART_CLAIMS, Claim, Verdict
+from .response_claims import RESPONSE_CLAIMS
 from .responses import RESPONSES, Response, ThesisResponse, respond
 
 __all__ = ["RESPONSE_FORMS", "Row", "judge", "panels", "write_thesis"]

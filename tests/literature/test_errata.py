@@ -21,6 +21,10 @@ from damperopt.critical import speed_polynomials
 from damperopt.hurwitz import characteristic_polynomial, hurwitz_determinants
 from damperopt.specs import Damper
 from damperopt.stability import LinearModel
+from damperopt.thesis.charts import MISPRINTS_OF
+from damperopt.thesis.printed import COEFFICIENTS, MISPRINTS
+
+printed_boeing, printed_utas, printed_new_design = (COEFFICIENTS[layout] for layout in ("boeing", "utas", "arreaza"))
 
 OF_GEAR = ("I_x", "I_z", "V", "sigma", "kappa", "C_F", "C_M", "F_z", "l_g", "e", "a", "k_y", "c_y", "sin_phi", "sin_psi")
 OF_DAMPER = ("c_lambda", "k_lambda", "E", "I_arm", "L", "sin_gamma", "sin_alpha", "R", "b")
@@ -92,101 +96,6 @@ def printed_matrix_3_5(p, k_psi, c_psi):
         [p.F_z * p.e / p.I_x, 0, -p.k_y / p.I_x, -p.c_y / p.I_x, bending_of_string],
         [p.V, p.e - p.a, 0, p.l_g, -p.V / p.sigma],
     ]
-
-
-def printed_boeing(p):
-    """(3-15) .. (3-20)."""
-    ell2 = p.L**2 * p.sin_gamma**2
-    trail = p.e * p.C_F - p.C_M
-    a_0 = Fraction(1)
-    a_1 = (p.I_z * p.V**2 - p.kappa * p.sigma + p.c_lambda * ell2 * p.V * p.sigma) / (p.I_z * p.sigma * p.V)
-    a_2 = (
-        p.I_z * (p.k_y * p.sigma + p.C_F * p.F_z * p.l_g**2)
-        + p.I_x * (p.c_lambda * ell2 * p.V - p.kappa)
-        + p.F_z * p.I_x * (p.e - p.a) * trail
-    ) / (p.I_x * p.I_z * p.sigma)
-    a_3 = (
-        p.k_y * (p.I_z * p.V**2 - p.kappa * p.sigma)
-        - p.C_F * p.F_z * p.kappa * p.l_g**2
-        + p.F_z * p.I_x * p.V**2 * trail
-        + ell2 * (p.I_x * p.k_lambda * p.V + p.c_lambda * (p.k_y * p.sigma + p.C_F * p.F_z * p.l_g**2))
-    ) / (p.I_x * p.I_z * p.sigma * p.V)
-    a_4 = (
-        trail * (p.F_z**2 * p.e * p.l_g + p.F_z * p.k_y * (p.e - p.a))
-        - p.k_y * p.kappa
-        + ell2 * (p.k_y * (p.c_lambda * p.V + p.k_lambda) + p.C_F * p.F_z * p.k_lambda * p.l_g**2)
-    ) / (p.I_x * p.I_z * p.sigma)
-    a_5 = p.k_y * p.V * (p.k_lambda * ell2 + p.F_z * trail) / (p.I_x * p.I_z * p.sigma)
-    return [a_0, a_1, a_2, a_3, a_4, a_5]
-
-
-def printed_utas(p):
-    """(3-32) .. (3-37)."""
-    ell = p.L * p.sin_gamma
-    trail = p.e * p.C_F - p.C_M
-    string = p.k_y * p.sigma + p.C_F * p.F_z * p.l_g**2
-    a_0 = p.I_z * p.I_x * p.V * p.sigma
-    a_1 = p.I_x * (p.I_z * p.V**2 - p.kappa * p.sigma + p.c_lambda * ell**2 * p.V * p.b * p.sigma / (10 * p.R))
-    a_2 = (
-        p.V * (p.I_z * p.k_y * p.sigma - p.I_x * p.kappa)
-        + p.V * p.F_z * p.I_x * (p.e - p.a) * trail
-        + p.C_F * p.F_z * p.I_z * p.V * p.l_g**2
-        + p.V * ell * (p.c_lambda * ell * p.V / (10 * p.R) + 2 * p.E * p.I_arm * p.sigma * p.sin_alpha / p.R**2)
-    )
-    a_3 = (
-        p.k_y * (p.I_z * p.V**2 - p.kappa * p.sigma)
-        - p.C_F * p.F_z * p.kappa * p.l_g**2
-        + p.F_z * p.I_x * p.V**2 * trail
-        + 2 * p.E * p.I_x * p.I_arm * p.L * p.V**2 * p.sin_alpha * p.sin_gamma / (10 * p.R)
-        + p.c_lambda * p.L**2 * p.V * p.b * p.sin_gamma**2 / (10 * p.R) * string
-    )
-    a_4 = (
-        p.F_z * p.V * trail * (p.k_y * (p.e - p.a) + p.F_z * p.e * p.l_g)
-        - p.k_y * p.V * p.kappa
-        + p.c_lambda * p.k_y * p.L**2 * p.V**2 * p.b * p.sin_gamma**2 / (10 * p.R)
-        + 2 * p.E * p.I_arm * p.L * p.V * p.sin_gamma * p.sin_alpha / p.R**2 * string
-    )
-    a_5 = p.F_z * p.k_y * p.V**2 * trail + 2 * p.E * p.I_arm * p.L * p.V**2 * p.sin_gamma * p.sin_alpha / p.R**2
-    return [a_0, a_1, a_2, a_3, a_4, a_5]
-
-
-def printed_new_design(p):
-    """(3-47) .. (3-52); the capital C_lambda of (3-50) is read as c_lambda."""
-    ell2 = p.L**2 * p.sin_gamma**2
-    trail = p.C_F * p.e - p.C_M
-    yaw_damping = p.c_lambda * ell2 * p.V - p.kappa
-    arm = 2 * p.E * p.I_arm * p.V / ell2
-    a_0 = p.I_x * p.I_z * p.V * p.sigma
-    a_1 = (
-        p.I_x * p.I_z * p.V**2
-        - p.I_x * p.kappa * p.sigma
-        + p.c_lambda * ell2 * p.I_x * p.V * p.sigma
-        + p.c_y * p.I_z * p.V * p.sigma
-    )
-    a_2 = (
-        (p.I_x * p.V + p.c_y * p.sigma) * yaw_damping
-        + p.c_y * p.I_z * p.V**2
-        + p.I_z * p.V * (p.c_y * p.V + p.k_y * p.sigma)
-        + 2 * p.I_x * p.E * p.I_arm * p.V * p.sigma / ell2
-        + p.C_F * p.F_z * p.I_z * p.V * p.l_g**2
-        + p.F_z * p.I_x * p.V * trail * (p.e - p.a)
-    )
-    a_3 = (
-        (p.c_y * p.V + p.k_y * p.sigma) * yaw_damping
-        + p.I_z * p.k_y * p.V**2
-        + p.l_g**2 * p.F_z * (-p.C_F * p.kappa + p.c_lambda * ell2 * p.V)
-        + arm * (p.I_x * p.V + p.c_y * p.sigma)
-        + p.F_z * p.I_x * p.V**2 * trail
-        + p.c_y * p.F_z * p.V * (p.C_F * p.e**2 + p.C_M * p.a)
-        - p.c_y * p.F_z * p.V * (p.C_M * p.e + p.C_F * p.a * p.e)
-    )
-    a_4 = (
-        p.k_y * p.V * yaw_damping
-        + arm * (p.c_y * p.V + p.k_y * p.sigma + p.l_g**2 * p.C_F * p.F_z)
-        + trail * (p.c_y * p.F_z * p.V**2 + p.F_z * p.k_y * p.V * (p.e - p.a))
-    )
-    a_5 = arm * p.V * p.k_y + p.F_z * p.V**2 * p.k_y * trail
-    return [a_0, a_1, a_2, a_3, a_4, a_5]
 
 
 def printed_3_1(p, k_psi, c_psi, M_z):
@@ -435,6 +344,16 @@ def test_3_51_lacks_the_coupling_by_the_load(p):
 def test_lateral_damping_is_left_out_of_boeing_and_utas_only(p, printed):
     changes = printed(p) != printed(changed(p, c_y=Fraction(0)))
     assert changes == (printed is printed_new_design)
+
+
+@pytest.mark.parametrize("layout", COEFFICIENTS)
+def test_printed_coefficients_with_all_misprints_put_right_are_derived(p, layout):
+    derived = {"boeing": derived_boeing, "utas": derived_utas}.get(layout) or (
+        lambda p: derived_new_design(p, stiffness_3_42(p))
+    )
+    lost = [sum(terms.get(i, 0) for terms in MISPRINTS[layout](p).values()) for i in range(6)]
+    assert [a + more for a, more in zip(COEFFICIENTS[layout](p), lost, strict=True)] == derived(p)
+    assert tuple(MISPRINTS[layout](p)) == MISPRINTS_OF[layout]
 
 
 def test_hurwitz_determinants_are_printed_right(p):

@@ -4,7 +4,8 @@
 
 The plane is damping by second moment of the arm, main gear, fifth order, new design, planar, 40 m/s, 150 kN. Maps: points per
 second of the compiled kernels (after compilation), of stacked numpy.linalg.eigvals on given matrices, and of a Python loop.
-Curves: evaluations and time of the traced boundary, and what a grid needs whose interpolated contour is as accurate.
+Curves: evaluations and time of the traced and of the explicit boundary, and what a grid needs whose interpolated contour
+is as accurate.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 import damperopt
 from damperopt.boundary import trace
+from damperopt.joint import boundary, joint_of
 
 STUDY = "configs/main_gear.yaml"
 X, Y = ("c_lambda", 0.0, 2e5), ("I_arm", 0.0, 1e-5)
@@ -65,22 +67,33 @@ def maps(study: damperopt.Study) -> None:
 
 
 def curves(study: damperopt.Study) -> None:
-    reference = densely(trace(plane_of(study).excess, tolerance=1e-9))
-    print("\n| tolerance | evaluations | time [ms] | points | largest error | grid of equal accuracy | grid/traced |")
-    print("|---|---|---|---|---|---|---|")
-    for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
-        plane = plane_of(study)
-        begin = time.perf_counter()
-        lines = trace(plane.excess, tolerance=tolerance)
-        elapsed = time.perf_counter() - begin
-        found = densely(lines)
-        error = max(distance(reference, found), distance(found, reference))
-        side = grid_side(study, reference, max(error, 1e-9))
-        points = sum(len(line.points) for line in lines)
-        print(
-            f"| {tolerance:g} | {plane.evaluations} | {1e3 * elapsed:.0f} | {points} | {error:.1e} | {side:.0f}^2 | "
-            f"{side**2 / plane.evaluations:.2g} |"
-        )
+    reference = densely(explicit(plane_of(study), 1e-9))
+    print("\n| curve | tolerance | evaluations | time [ms] | points | largest error | grid of equal accuracy | grid/curve |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, curve in (("traced", traced), ("explicit", explicit)):
+        for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
+            plane = plane_of(study)
+            begin = time.perf_counter()
+            lines = curve(plane, tolerance)
+            elapsed = time.perf_counter() - begin
+            found = densely(lines)
+            error = max(distance(reference, found), distance(found, reference))
+            side = grid_side(study, reference, max(error, 1e-9))
+            points = sum(len(line.points) for line in lines)
+            print(
+                f"| {name} | {tolerance:g} | {plane.evaluations} | {1e3 * elapsed:.0f} | {points} | {error:.1e} | "
+                f"{side:.0f}^2 | {side**2 / plane.evaluations:.2g} |"
+            )
+
+
+def traced(plane: damperopt.Plane, tolerance: float) -> list:
+    return trace(plane.excess, tolerance=tolerance)
+
+
+def explicit(plane: damperopt.Plane, tolerance: float) -> list:
+    found = joint_of(plane)
+    assert found is not None
+    return boundary(plane, found, tolerance) or []
 
 
 def densely(lines: list) -> list[np.ndarray]:

@@ -8,7 +8,7 @@
 """
 
 from .certify import certify
-from .chart import StabilityChart, chart, joint_boundary
+from .chart import StabilityChart, chart
 from .config import json_schema, load, loads
 from .critical import critical_speeds
 from .decay import DecayAnalysis
@@ -16,6 +16,7 @@ from .design import combinations, optimise, optimise_each, rank
 from .disturbances import Disturbance
 from .errors import CertificateError, ConfigError, DamperoptError, OutputError
 from .events import ExactSimulator, simulate_exactly
+from .joint import joint_boundary
 from .maps import FilledMap, StabilityMap, filled_map
 from .modes import ModeTable, track_modes
 from .plane import Axis, Plane

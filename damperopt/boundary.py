@@ -43,9 +43,21 @@ SEARCHES = 40
 
 @dataclass(frozen=True)
 class Polyline:
-    """A piece of boundary: (m, 2) points in fractions of the ranges, in order; the first is the last where it is closed."""
+    """A piece of boundary.
+
+    Attributes
+    ----------
+    points : ndarray
+        (m, 2) in fractions of the ranges, in order; the first is the last where it is closed.
+    frequency : ndarray or None
+        (m,) of the eigenvalue that crosses [Hz], 0 where it is real; None where it is not known.
+    corners : ndarray or None
+        (k,) points behind which another eigenvalue crosses; None where that is not known.
+    """
 
     points: np.ndarray
+    frequency: np.ndarray | None = None
+    corners: np.ndarray | None = None
 
     @property
     def closed(self) -> bool:

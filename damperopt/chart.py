@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .boundary import trace
+from .boundary import Polyline, trace
 from .errors import ConfigError
+from .joint import boundary as joint_lines
+from .joint import joint_of
 from .plane import Axis, Plane, quantity_name
 from .specs import Study
-from .stability import linear_gear
 
-__all__ = ["Curve", "Family", "StabilityChart", "chart", "joint_boundary"]
+__all__ = ["Curve", "Family", "StabilityChart", "chart"]
 
 STANDSTILL = 1e-6
 """Part of the largest eigenvalue below which the imaginary part of a critical one is zero."""
@@ -23,6 +24,9 @@ JUMP = 0.02
 
 NEAR = 20
 """Tolerances between the neighbours at a corner, at most."""
+
+CHECKED = 24
+"""Points along an axis at which explicit curves are held against eigenvalues."""
 
 BATCH = 2_000_000
 """Comparisons of points with segments that are in memory at once."""
@@ -63,6 +67,9 @@ class Family:
     abscissa: float | None
     """Spectral abscissa of the design that is drawn in [1/s]."""
     evaluations: int
+    """State matrices whose eigenvalues were computed."""
+    explicit: bool = False
+    """Whether the curves are explicit ones, of quantities that act at one joint; else they are traced."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +93,7 @@ class StabilityChart:
     tolerance, cell : float
         Distance of chords from the boundary, and the size down to which branches and islands are found by sign; both in
         fractions of the ranges. Smaller islands are sought from every local extremum of the grid, without a guarantee.
+        Explicit curves need no search: their limit is the step in frequency.
     """
 
     x: Axis
@@ -199,30 +207,55 @@ def chart(
         varied = Axis.of(study, name, min(vary[1]), float(np.nextafter(max(vary[1]), np.inf)))
     numbers = {**values, "speed": speed, "vertical_load": load}
     mark = (numbers[plane.x.name], numbers[plane.y.name]) if {plane.x.name, plane.y.name} <= numbers.keys() and design else None
+    record = StabilityChart(plane.x, plane.y, margin, varied, (), values, mark, speed, load, tolerance, 1 / cells)
     made = []
     for value in families:
         fixed = {} if varied is None or value is None else {varied.name: float(value)}
-        made.append(_family(replace(plane, fixed=fixed, evaluations=0), value, mark, cells, tolerance))
-    return StabilityChart(plane.x, plane.y, margin, varied, tuple(made), values, mark, speed, load, tolerance, 1 / cells)
+        here = replace(plane, fixed=fixed, evaluations=0)
+        joint = joint_of(here)
+        lines = None if joint is None else joint_lines(here, joint, tolerance)
+        family = None if lines is None else _family(here, value, mark, lines, tolerance, explicit=True)
+        if family is None or not _right_everywhere(replace(record, families=(family,)), here):
+            family = _family(here, value, mark, trace(here.excess, cells, tolerance=tolerance), tolerance)
+        made.append(family)
+    return replace(record, families=tuple(made))
 
 
-def _family(plane: Plane, value: float | None, mark: tuple[float, float] | None, cells: int, tolerance: float) -> Family:
-    lines = trace(plane.excess, cells, tolerance=tolerance)
+def _right_everywhere(record: StabilityChart, plane: Plane) -> bool:
+    """Whether curves that no search has found tell the sides of a grid of points as eigenvalues do."""
+    u, v = (grid.ravel() for grid in np.meshgrid(*2 * [(np.arange(CHECKED) + 0.5) / CHECKED]))
+    return bool((record.stable(plane.x.at(u), plane.y.at(v)) == (plane.excess(u, v) < 0)).all())
+
+
+def _family(
+    plane: Plane,
+    value: float | None,
+    mark: tuple[float, float] | None,
+    lines: Sequence[Polyline],
+    tolerance: float,
+    explicit: bool = False,
+) -> Family:
     corner = bool(plane.excess(np.zeros(1), np.zeros(1))[0] < 0)
     curves = []
     for line in lines:
         u, v = line.points.T
-        roots = plane.rightmost(u, v)
-        hopf = roots.imag > STANDSTILL * np.abs(plane.matrices(u, v)).max(axis=(1, 2))
+        frequency = _frequency(plane, u, v) if line.frequency is None else line.frequency
+        hopf = frequency > 0
         points = np.column_stack([plane.x.at(u), plane.y.at(v)])
-        frequency = np.where(hopf, roots.imag / (2 * np.pi), 0.0)
-        at = _corners(line.points, hopf, frequency, tolerance)
+        at = _corners(line.points, hopf, frequency, tolerance) if line.corners is None else line.corners
         curves.append(Curve(points, hopf, frequency, line.closed, (points[at] + points[at + 1]) / 2))
     abscissa = None
     if mark is not None:
         place = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
         abscissa = float(plane.excess(*place)[0]) - plane.margin
-    return Family(value, tuple(curves), corner, abscissa, plane.evaluations)
+    return Family(value, tuple(curves), corner, abscissa, plane.evaluations, explicit)
+
+
+def _frequency(plane: Plane, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Of the rightmost eigenvalue [Hz], 0 where it is real but for rounding."""
+    roots = plane.rightmost(u, v)
+    hopf = roots.imag > STANDSTILL * np.abs(plane.matrices(u, v)).max(axis=(1, 2))
+    return np.where(hopf, roots.imag / (2 * np.pi), 0.0)
 
 
 def _corners(points: np.ndarray, hopf: np.ndarray, frequency: np.ndarray, tolerance: float) -> np.ndarray:
@@ -235,41 +268,3 @@ def _corners(points: np.ndarray, hopf: np.ndarray, frequency: np.ndarray, tolera
         if all(np.linalg.norm(points[k] - points[other]) > 3 * NEAR * tolerance for other in found):
             found.append(int(k))
     return np.array(sorted(found), int)
-
-
-def joint_boundary(
-    study: Study, speed: float, load: float, frequencies: np.ndarray, margin: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping about the yaw axis at which the gear has the eigenvalue -margin + i w: an explicit curve.
-
-    With G(s) the receptance of the gear without damper at the strut, yaw angle over yaw torque, the characteristic equation
-    with k + s c at this joint is k + s c = -1/G(s), for any number of states.
-
-    Parameters
-    ----------
-    study : Study
-        Its damper has no part in it.
-    speed, load : float
-        [m/s], [N]
-    frequencies : ndarray
-        (m,) w/(2 pi) > 0 [Hz].
-    margin : float
-        [1/s]
-
-    Returns
-    -------
-    tuple of ndarray
-        (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
-    """
-    free = {"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}
-    gear = linear_gear(study.replace(damper=free))
-    A = gear.matrices(speed, load)[0]
-    s = -margin + 2j * np.pi * np.asarray(frequencies, float)
-    torque = np.zeros(len(A))
-    torque[gear.state_names.index("yaw_rate")] = 1 / study.gear.yaw_inertia
-    receptance = np.linalg.solve(s[:, None, None] * np.eye(len(A)) - A, torque[:, None])[
-        :, gear.state_names.index("yaw_angle"), 0
-    ]
-    stiffness = -1 / receptance
-    c_psi = stiffness.imag / s.imag
-    return stiffness.real - s.real * c_psi, c_psi

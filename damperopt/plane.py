@@ -95,6 +95,9 @@ class Axis:
         lowest = 0.0 if full in (*OPERATING, *DESIGN_UNITS) else -np.inf
         if low < lowest or (full == "speed" and low == 0):
             raise ConfigError(f"{name}: found {low:g} {unit}; allowed: {'> 0' if full == 'speed' else '>= 0'}")
+        if lowest == -np.inf:
+            for end in (low, high):
+                study.replace(**{full.replace(".", "__"): float(end)})  # what a study may not have, a chart may not show
         return cls(full, low, high, unit)
 
     def at(self, fraction: np.ndarray) -> np.ndarray:

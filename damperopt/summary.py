@@ -192,10 +192,16 @@ def show_chart(console: Console, record: StabilityChart) -> None:
             where = "" if family.value is None else f" at {family.value:g} {unit}"
             console.print(f"Spectral abscissa of the design{where}: {family.abscissa:.6g} 1/s")
     looked = sum(family.evaluations for family in record.families)
-    console.print(
-        f"Traced to {record.tolerance:g} of the ranges with {looked} eigenvalue problems; islands smaller than "
-        f"{record.cell:.3g} of the ranges may be missed."
-    )
+    if all(family.explicit for family in record.families):
+        console.print(
+            f"Explicit curves (both quantities act at one joint) to {record.tolerance:g} of the ranges, "
+            f"checked with {looked} eigenvalue problems."
+        )
+    else:
+        console.print(
+            f"Traced to {record.tolerance:g} of the ranges with {looked} eigenvalue problems; islands smaller than "
+            f"{record.cell:.3g} of the ranges may be missed."
+        )
 
 
 def show_claims(console: Console, rows: Sequence[Row]) -> None:

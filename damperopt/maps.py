@@ -46,6 +46,7 @@ _UNARY |= {
     for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")
 }
 
+TINY = 1e-300
 CLOSE = 1e-8
 """Relative to the root: how far to the right of a value no root is certain to lie."""
 
@@ -89,6 +90,7 @@ def all_roots(a, roots, known):
                 largest = max(largest, abs(step) / (abs(roots[k]) + 1e-300))
             if largest < 1e-12:
                 return
+    roots[:] = np.nan + 0j  # equal roots: left to eigenvalues
 
 def rightmost(a, roots):
     all_roots(a, roots, False)
@@ -192,7 +194,7 @@ class StabilityMap:
         """
         out = np.empty((len(y), len(x)))
         self._abscissa(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
-        return out
+        return self._completed(out, x, y, lambda roots: roots.real.max(axis=1))
 
     def damping_ratio(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Least damping ratio of all modes, -Re(s)/|s|.
@@ -209,6 +211,14 @@ class StabilityMap:
         """
         out = np.empty((len(y), len(x)))
         self._damping(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
+        return self._completed(out, x, y, lambda roots: (-roots.real / np.maximum(np.abs(roots), TINY)).min(axis=1))
+
+    def _completed(self, out: np.ndarray, x: np.ndarray, y: np.ndarray, measure: Callable[..., np.ndarray]) -> np.ndarray:
+        """Pixels whose iteration did not converge, by eigenvalues."""
+        rows, columns = np.nonzero(np.isnan(out))
+        if rows.size:
+            u, v = ((values - a.low) / (a.high - a.low) for values, a in ((x[columns], self.plane.x), (y[rows], self.plane.y)))
+            out[rows, columns] = measure(np.linalg.eigvals(self.plane.matrices(u, v)))
         return out
 
 

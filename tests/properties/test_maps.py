@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from random_gears import random_gear
+from random_gears import random_gear, rotational
 
 from damperopt.maps import StabilityMap
 from damperopt.plane import Axis, Plane
@@ -63,3 +63,13 @@ def test_map_and_traced_boundary_agree(main_gear):
     plane = Plane(study, Axis.of(study, *x), Axis.of(study, *y), study.start, 40.0, 150e3)
     X, Y = np.linspace(x[1], x[2], 300), np.linspace(y[1], y[2], 300)
     assert (StabilityMap(plane).kept(X, Y) == chart.stable(*np.meshgrid(X, Y))).mean() > 0.9999
+
+
+def test_a_pixel_whose_iteration_does_not_converge_is_found_by_eigenvalues(main_gear, monkeypatch):
+    x, y = ("damper.torsional_damping", 0.0, 5e3), ("damper.torsional_stiffness", 0.0, 1e6)
+    study = rotational(main_gear)
+    found, X, Y, worst, scale, damping = compared(study, {}, x, y, 0.0)
+    for name in ("_abscissa", "_damping"):
+        monkeypatch.setattr(found, name, lambda x, y, out: out.fill(np.nan))
+    assert np.abs(found.abscissa(X, Y) - worst).max() < 1e-12 * scale.max()
+    assert np.abs(found.damping_ratio(X, Y) - damping).max() < 1e-12

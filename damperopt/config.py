@@ -7,7 +7,7 @@ import re
 import reprlib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml
 from pydantic import BaseModel, ValidationError
@@ -16,7 +16,9 @@ from .errors import ConfigError
 from .records import quantity_of
 from .specs import Study
 
-__all__ = ["json_schema", "load", "loads"]
+__all__ = ["json_schema", "load", "loads", "parsed", "text_of"]
+
+Record = TypeVar("Record", bound=BaseModel)
 
 
 class _Loader(yaml.SafeLoader):
@@ -53,14 +55,23 @@ def load(path: str | Path) -> Study:
     ConfigError
         With one message per problem, each ``file:line: key.path: what; allowed: ...``.
     """
-    path = Path(path)
+    return loads(text_of(path), str(path))
+
+
+def text_of(path: str | Path) -> str:
+    """Text of a file that a user names.
+
+    Raises
+    ------
+    ConfigError
+        If it cannot be read.
+    """
     try:
-        text = path.read_text(encoding="utf-8")
+        return Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}; allowed: a readable YAML file") from error
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: is not UTF-8 text (byte {error.start}); allowed: a YAML text file") from error
-    return loads(text, str(path))
 
 
 def loads(text: str, name: str = "<text>") -> Study:
@@ -82,12 +93,36 @@ def loads(text: str, name: str = "<text>") -> Study:
     ConfigError
         As `load`.
     """
+    return parsed(text, name, Study)[0]
+
+
+def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tuple, int]]:
+    """A record of any class from YAML text, and the line of every key path in it.
+
+    Parameters
+    ----------
+    text : str
+    name : str
+        Name of the source, for messages.
+    model : type
+        Class of the record.
+
+    Returns
+    -------
+    tuple
+        (record, lines)
+
+    Raises
+    ------
+    ConfigError
+        As `load`.
+    """
     loader = None
     try:
         loader = _Loader(text)
         root = loader.get_single_node()
         if not isinstance(root, yaml.MappingNode):
-            raise ConfigError(f"{name}:1: the file is not a mapping of keys; allowed: {', '.join(Study.model_fields)}")
+            raise ConfigError(f"{name}:1: the file is not a mapping of keys; allowed: {', '.join(model.model_fields)}")
         lines: dict[tuple, int] = {}
         duplicates = _index(root, (), lines, name)
         if duplicates:
@@ -102,12 +137,12 @@ def loads(text: str, name: str = "<text>") -> Study:
     finally:
         if loader is not None:
             loader.dispose()
-    if empty := _empty(root, (), name):
+    if empty := _empty(root, (), name, model):
         raise ConfigError(empty)
     try:
-        return Study.model_validate(data)
+        return model.model_validate(data), lines
     except ValidationError as error:
-        problems = [_message(problem, data, lines, name) for problem in error.errors(include_url=False)]
+        problems = [_message(problem, data, lines, name, model) for problem in error.errors(include_url=False)]
         raise ConfigError([text for _, text in sorted(set(problems))]) from None
 
 
@@ -139,7 +174,7 @@ def _index(node: yaml.Node, path: tuple, lines: dict[tuple, int], name: str) -> 
     return problems
 
 
-def _empty(node: yaml.Node, path: tuple, name: str) -> list[str]:
+def _empty(node: yaml.Node, path: tuple, name: str, model: type[BaseModel]) -> list[str]:
     """Messages about keys with nothing behind them: an empty block would drop a requirement without a word."""
     if isinstance(node, yaml.MappingNode):
         items = [(key.value, value) for key, value in node.value]
@@ -148,18 +183,18 @@ def _empty(node: yaml.Node, path: tuple, name: str) -> list[str]:
     else:
         if node.tag != "tag:yaml.org,2002:null":
             return []
-        allowed = _allowed_at(path)
+        allowed = _allowed_at(path, model)
         return [f"{name}:{node.start_mark.line + 1}: {_dotted(path)}: found nothing; allowed: {allowed}; or leave the key out"]
-    return [text for key, value in items for text in _empty(value, (*path, key), name)]
+    return [text for key, value in items for text in _empty(value, (*path, key), name, model)]
 
 
-def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str) -> tuple[int, str]:
+def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model: type[BaseModel]) -> tuple[int, str]:
     context = problem.get("ctx", {})
     path = _path_in_file(problem["loc"], data) + tuple(filter(None, context.get("key", "").split(".")))
     known = path
     while known not in lines:
         known = known[:-1]
-    what = _what(problem, path)
+    what = _what(problem, path, model)
     return lines[known], f"{name}:{lines[known]}: {_dotted(path)}: {what}"
 
 
@@ -179,15 +214,15 @@ def _path_in_file(location: Sequence[Any], data: Any) -> tuple:
     return tuple(path)
 
 
-def _what(problem: Any, path: tuple) -> str:
+def _what(problem: Any, path: tuple, model: type[BaseModel]) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     if kind in ("quantity", "study"):
         return problem["msg"]
     found = _Shortened(problem.get("input"))
     if kind == "missing":
-        return f"missing key; allowed: {_allowed_at(path)}"
+        return f"missing key; allowed: {_allowed_at(path, model)}"
     if kind == "extra_forbidden":
-        siblings = _keys_at(path[:-1])
+        siblings = _keys_at(path[:-1], model)
         close = difflib.get_close_matches(str(path[-1]), siblings, n=1)
         hint = f" (did you mean '{close[0]}'?)" if close else ""
         return f"unknown key{hint}; allowed: {', '.join(siblings) or 'none'}"
@@ -197,10 +232,10 @@ def _what(problem: Any, path: tuple) -> str:
         tags = "'nonlinear', 'linear', 'straight_tangent'"
         return f"{'missing' if kind.endswith('found') else repr(context.get('tag'))} tyre law; allowed: law: {tags}"
     if kind.startswith("model_") or kind in ("dict_type", "model_type"):
-        return f"found {found!r} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path))}"
+        return f"found {found!r} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path, model))}"
     if kind == "list_type":
-        return f"found {found!r} instead of a list; allowed: a list of items, each {_allowed_at(path)}"
-    return f"found {found!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path)}"
+        return f"found {found!r} instead of a list; allowed: a list of items, each {_allowed_at(path, model)}"
+    return f"found {found!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path, model)}"
 
 
 class _Shortened:
@@ -222,33 +257,33 @@ def _models(annotation: Any) -> list[type[BaseModel]]:
     return [model for part in getattr(annotation, "__args__", ()) for model in _models(part)]
 
 
-def _fields_at(path: tuple) -> list[Any]:
+def _fields_at(path: tuple, model: type[BaseModel]) -> list[Any]:
     fields: list[Any] = []
-    models: list[type[BaseModel]] = [Study]
+    models: list[type[BaseModel]] = [model]
     for key in path:
         if isinstance(key, int):
             continue
-        fields = [model.model_fields[key] for model in models if key in model.model_fields]
+        fields = [inner.model_fields[key] for inner in models if key in inner.model_fields]
         models = [inner for field in fields for inner in _models(field.annotation)]
     return fields
 
 
-def _keys_at(path: tuple) -> list[str]:
-    models = [model for field in _fields_at(path) for model in _models(field.annotation)] if path else [Study]
-    return list(dict.fromkeys(key for model in models for key in model.model_fields))
+def _keys_at(path: tuple, model: type[BaseModel]) -> list[str]:
+    models = [inner for field in _fields_at(path, model) for inner in _models(field.annotation)] if path else [model]
+    return list(dict.fromkeys(key for inner in models for key in inner.model_fields))
 
 
-def _allowed_at(path: tuple) -> str:
-    for field in _fields_at(path):
+def _allowed_at(path: tuple, model: type[BaseModel]) -> str:
+    for field in _fields_at(path, model):
         quantity = quantity_of(field.annotation, field.metadata)
         if quantity:
             return quantity.describe()
-    for field in _fields_at(path):
+    for field in _fields_at(path, model):
         limits = {k: v for m in field.metadata for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
         if limits:
             words = [f"{sign} {limits[k]}" for k, sign in (("ge", ">="), ("le", "<=")) if k in limits]
             return f"a whole number, {' and '.join(words)}"
-    keys = _keys_at(path)
+    keys = _keys_at(path, model)
     return f"a mapping with the keys {', '.join(keys)}" if keys else "see 'damperopt init' for an example"
 
 

@@ -1,4 +1,4 @@
-"""Worker processes."""
+"""Worker processes, here or on a cluster."""
 
 from __future__ import annotations
 
@@ -8,8 +8,14 @@ import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-__all__ = ["cores", "executor"]
+from .errors import ConfigError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["cluster", "cluster_size", "cores", "executor", "process_pool"]
 
 
 def cores() -> int:
@@ -27,7 +33,14 @@ def executor(workers: int) -> Iterator[Executor | None]:
     """
     if workers <= 1:
         yield None
-        return
+    else:
+        with process_pool(workers) as pool:
+            yield pool
+
+
+@contextmanager
+def process_pool(workers: int) -> Iterator[Executor]:
+    """Pool of worker processes; an interrupt ends them at once."""
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods:
@@ -39,6 +52,32 @@ def executor(workers: int) -> Iterator[Executor | None]:
         pool.shutdown(wait=False, cancel_futures=True)
         raise
     pool.shutdown()
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Executor]:
+    """Executor of a running Dask cluster, which runs the tasks of a worker that dies on another."""
+    with _client(address) as client:
+        yield client.get_executor(pure=False)
+
+
+def cluster_size(address: str) -> int:
+    """Threads of all its workers, at least 1."""
+    with _client(address) as client:
+        return max(sum(client.nthreads().values()), 1)
+
+
+def _client(address: str) -> Client:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ConfigError("--scheduler: needs Dask, which is not installed; pip install 'damperopt[cluster]'") from None
+    try:
+        return Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise ConfigError(
+            f"--scheduler: {address}: no scheduler answers ({error}); allowed: tcp://HOST:PORT of a running one"
+        ) from None
 
 
 def _ignore_interrupt() -> None:

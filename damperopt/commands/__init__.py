@@ -5,6 +5,7 @@ from .chart import chart
 from .optimise import optimise
 from .simulate import simulate
 from .studies import init, schema, validate
+from .sweep import sweep
 from .thesis import thesis
 
-__all__ = ["analyse", "chart", "init", "optimise", "schema", "simulate", "thesis", "validate"]
+__all__ = ["analyse", "chart", "init", "optimise", "schema", "simulate", "sweep", "thesis", "validate"]

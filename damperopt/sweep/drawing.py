@@ -14,7 +14,8 @@ from .spec import Sweep
 
 __all__ = ["sweep_figure"]
 
-MARKS = {"solved": "o", "stable": "o", "unstable": "s"}
+MARKS = ("solved", "stable", "unstable")
+"""Whose numbers are shown."""
 
 
 def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
@@ -32,7 +33,9 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
     """
     name, label = ("mass", "Mass [kg]") if sweep.run == "optimise" else ("abscissa", "Spectral abscissa [1/s]")
     rows = [(point.values, records.get(point.index)) for point in sweep.points]
-    points = [(values, record.numbers.get(name, np.nan) if _counts(record) else np.nan) for values, record in rows]
+    points = [
+        (values, record.numbers.get(name, np.nan) if record and record.status in MARKS else np.nan) for values, record in rows
+    ]
     numeric = [key for key, values in sweep.axes.items() if isinstance(values[0], float)]
     names = [key for key in sweep.axes if key not in numeric]
     with plt.rc_context(STYLE):
@@ -47,11 +50,6 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
         lost = sum(not np.isfinite(value) for _, value in points)
         figure.suptitle(f"{sweep.name}: {len(points)} points" + (f", {lost} without a value" if lost else ""), fontsize=10)
         return figure
-
-
-def _counts(record: PointRecord | None) -> bool:
-    """Whether a record's number is that of a design that holds."""
-    return record is not None and record.status in MARKS
 
 
 def _words(sweep: Sweep, key: str) -> str:
@@ -87,10 +85,11 @@ def _map(sweep: Sweep, points: list, label: str) -> Any:
     figure, axis = plt.subplots(figsize=(7, 5.2))
     (x, xs), (y, ys) = sweep.axes.items()
     found = np.array([value for _, value in points]).reshape(len(xs), len(ys))
-    image = axis.pcolormesh(xs, ys, found.T, shading="nearest", cmap="viridis")
+    at_x, at_y = np.array(xs, float), np.array(ys, float)
+    image = axis.pcolormesh(at_x, at_y, found.T, shading="nearest", cmap="viridis")
     figure.colorbar(image, ax=axis, label=label)
-    for i, u in enumerate(xs):
-        for j, v in enumerate(ys):
+    for i, u in enumerate(at_x):
+        for j, v in enumerate(at_y):
             text = f"{found[i, j]:.4g}" if np.isfinite(found[i, j]) else "none"
             if found.size <= 100:
                 axis.text(u, v, text, ha="center", va="center", fontsize=8, color="white", bbox={"fc": "#0006", "ec": "none"})

@@ -66,6 +66,7 @@ class SweepSpec(_Record):
     name: str = "sweep"
     base: str
     run: Literal["optimise", "analyse"] = "optimise"
+    set: dict[str, Any] = {}
     vary: dict[str, list[Any] | Range] = {}
     samples: Samples | None = None
     warm_start: bool = True
@@ -195,6 +196,11 @@ def sweep_of(base: Study, **settings: Any) -> Sweep:
 
 
 def _sweep(spec: SweepSpec, base: Study, where: Any) -> Sweep:
+    for key, value in spec.set.items():
+        changed, problem = _study(base, {key: value})
+        if changed is None:
+            raise ConfigError(f"{where('set', key)}: {problem}")
+        base = changed
     units: dict[str, str] = {}
     for group in (("vary", spec.vary), ("samples.over", spec.samples.over if spec.samples else {})):
         for key in group[1]:
@@ -210,7 +216,7 @@ def _sweep(spec: SweepSpec, base: Study, where: Any) -> Sweep:
     total = int(np.prod([len(values) for values in raw.values()])) * len(draws)
     if total > MOST_POINTS:
         raise ConfigError(f"{where('vary')}: makes {total} points; allowed: at most {MOST_POINTS}")
-    points = []
+    points: list[Point] = []
     for chosen in product(*(zip(raw[key], axes[key], strict=True) for key in raw)):
         for draw in draws:
             given = {key: value for key, (value, _) in zip(raw, chosen, strict=True)} | draw

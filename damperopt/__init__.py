@@ -7,6 +7,8 @@
 'solved'
 """
 
+from importlib import import_module
+
 from .certify import certify
 from .chart import StabilityChart, chart
 from .config import json_schema, load, loads
@@ -28,6 +30,14 @@ from .stability import LinearGear, linear_gear, spectral_abscissa
 from .trajectory import Motion, Trajectory, motion_of
 from .verify import GridCheck, check_decay, check_grid
 from .worst import worst_points
+
+
+def __getattr__(name: str) -> object:
+    """`damperopt.plots` is imported when it is used: matplotlib takes its time."""
+    if name == "plots":
+        return import_module(".plots", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "Axis",

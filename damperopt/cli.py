@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .commands import analyse, chart, init, optimise, schema, simulate, sweep, thesis, validate
+from .commands import analyse, chart, init, optimise, report, schema, simulate, sweep, thesis, validate
 from .commands.shared import err, out, pressed
 from .errors import DamperoptError
 
@@ -23,7 +23,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (optimise, analyse, simulate, chart, sweep, thesis, validate, init, schema):
+for command in (optimise, report, analyse, simulate, chart, sweep, thesis, validate, init, schema):
     app.command()(command)
 
 

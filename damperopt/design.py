@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
@@ -62,7 +63,7 @@ def optimise(
     study: Study,
     *,
     workers: int = 1,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     config_file: str | Path | None = None,
 ) -> DesignResult:
     """Lightest damper of a study, proved stable over its envelope.
@@ -72,8 +73,8 @@ def optimise(
     study : Study
     workers : int
         Processes for the starts; 1 keeps everything in this one.
-    progress : callable or None
-        Called with (done, total) after each start.
+    progress : callable, bool or None
+        Called with (done, total) after each start; True: a bar, in a notebook too.
     config_file : str, Path or None
         Source of the study, for the provenance.
 
@@ -89,12 +90,28 @@ def optimise(
     """
     combinations(study, [], [])  # refuses what cannot be optimised
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
-    with executor(workers) as pool:
-        outcomes = run_starts(study, pool, progress)
+    with executor(workers) as pool, _bar(study, progress is True) as shown:
+        outcomes = run_starts(study, pool, shown if isinstance(progress, bool) else progress)
     solver = solver_for(study.model_dump_json())
     result = _answer(study, solver, outcomes)
     provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
     return result.model_copy(update={"provenance": provenance, "config": study.model_dump(mode="json")})
+
+
+@contextmanager
+def _bar(study: Study, wanted: bool) -> Iterator[Progress | None]:
+    if not wanted:
+        yield None
+        return
+    from tqdm.auto import tqdm
+
+    with tqdm(desc=f"{study.damper.topology}, {study.material.name}", unit="start") as bar:
+
+        def advance(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield advance
 
 
 def combinations(study: Study, topologies: Sequence[str], materials: Sequence[str]) -> list[Study]:

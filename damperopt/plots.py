@@ -27,6 +27,7 @@ __all__ = [
     "modes_over_speed",
     "region",
     "save",
+    "tornado",
     "trajectory",
 ]
 
@@ -183,6 +184,22 @@ def mass_by_part(result: DesignResult, axis: Any = None) -> Any:
         axis.set_xlabel("Mass [kg]")
         axis.set_title(f"{result.topology}, {result.material}: {result.mass.total:.2f} kg", fontsize=10)
         return axis.figure
+
+
+def tornado(result: DesignResult, shown: int = 12) -> Any:
+    """Change of mass for one per cent of each input, the largest first; returns the Figure."""
+    strongest = [s for s in result.sensitivities if s.value != 0][:shown][::-1]
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(7, 0.3 * len(strongest) + 1.2))
+        slopes = [s.elasticity for s in strongest]
+        colours = ["#a11d33" if slope > 0 else "#2f6b3a" for slope in slopes]
+        bars = axis.barh([s.input for s in strongest], slopes, color=colours, height=0.65)
+        axis.bar_label(bars, [f"{slope:+.3g} %" for slope in slopes], padding=3, fontsize=8)
+        axis.axvline(0, color="#333333", lw=0.8)
+        axis.margins(x=0.18)
+        axis.grid(axis="y", visible=False)
+        axis.set_xlabel("Change of mass for +1 % of the input [%]")
+        return figure
 
 
 def region(record: FeasibleRegion, axis: Any = None) -> Any:

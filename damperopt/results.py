@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any, Literal
 
@@ -273,6 +274,15 @@ class DesignResult(_Record):
     def exit_code(self) -> int:
         """0 solved and verified, 3 infeasible, 4 solver or verification failure."""
         return {"solved": 0, "infeasible": 3, "failed": 4}[self.status]
+
+    def _repr_html_(self) -> str:
+        """The answer as notebooks show it."""
+        mass = "" if self.mass is None else f": <b>{self.mass.total:.3f} kg</b>"
+        title = f"{escape(self.status)}{mass}, {escape(self.topology)} ({escape(self.geometry)}), {escape(self.material)}"
+        rows = [(name, f"{value:.5g}", UNITS[name]) for name, value in (self.design | self.derived).items()]
+        rows += [(f"mass of {part}", f"{value:.3f}", "kg") for part, value in (self.mass.parts if self.mass else {}).items()]
+        cells = "".join(f"<tr><th>{escape(name)}</th><td>{value}</td><td>{unit}</td></tr>" for name, value, unit in rows)
+        return f"<p>{title}</p><p>{escape(self.message)}</p><table>{cells}</table>"
 
     def to_json(self) -> str:
         """JSON text; floats keep every digit."""

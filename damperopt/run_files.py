@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .chart import StabilityChart
+from .chart import StabilityChart, chart
 from .decay import decay_analysis
 from .maps import FilledMap
 from .modes import ModeTable, track_modes
@@ -17,7 +18,7 @@ from .simulate import Simulator
 from .specs import Study
 from .stability import linear_gear
 
-__all__ = ["draw_modes", "write_chart_files", "write_design"]
+__all__ = ["design_chart", "design_figures", "draw_modes", "write_chart_files", "write_design"]
 
 
 def write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
@@ -37,20 +38,79 @@ def write_design(place: Path, study: Study, result: DesignResult, figures: bool)
         return
     low, high = study.envelope.speed.min, study.envelope.speed.max
     grid = np.unique(np.linspace(low, high, 400))
-    before, after = linear_gear(study), linear_gear(study, result.design)
+    after = linear_gear(study, result.design)
     tables = [track_modes(after, grid, load) for load in study.envelope.loads]
     write_modes(place / "modes.csv", tables)
-    if not figures:
-        return
-    from . import plots  # matplotlib takes longer to import than a design takes to find
+    if figures:
+        from . import plots  # matplotlib takes longer to import than a design takes to find
+
+        for name, draw in design_figures(study, result).items():
+            plots.save(draw(), place, name)
+
+
+def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[], Any]]:
+    """What draws each figure of a design, by name; empty without a design.
+
+    Parameters
+    ----------
+    study : Study
+    result : DesignResult
+    """
+    from . import chart_plot, plots
+    from .linkage_plot import linkage
     from .region import feasible_region
 
-    shown = min(tables, key=lambda table: abs(table.load - worst.load))
-    plots.save(plots.modes_before_after(track_modes(before, grid, shown.load), shown, result.stability_margin), place, "modes")
-    plots.save(plots.mass_by_part(result), place, "mass")
+    worst = result.stability
+    if worst is None:
+        return {}
+
+    def modes() -> Any:
+        grid = np.unique(np.linspace(study.envelope.speed.min, study.envelope.speed.max, 400))
+        before, after = (
+            track_modes(gear, grid, worst.load) for gear in (linear_gear(study), linear_gear(study, result.design))
+        )
+        return plots.modes_before_after(before, after, result.stability_margin)
+
+    found: dict[str, Callable[[], Any]] = {
+        "linkage": lambda: linkage(result.topology, result.design),
+        "mass": lambda: plots.mass_by_part(result),
+        "modes": modes,
+        "chart": lambda: chart_plot.chart(design_chart(study, result)),
+        "region": lambda: plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])),
+        "tornado": lambda: plots.tornado(result),
+    }
     if result.decay is not None:
-        plots.save(_decay_figure(study, result), place, "decay")
-    plots.save(plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])), place, "region")
+        found["decay"] = lambda: _decay_figure(study, result)
+    return found
+
+
+def design_chart(study: Study, result: DesignResult) -> StabilityChart:
+    """Stability chart of damping and spring about the design, for the ends and the middle of the envelope's speeds.
+
+    Parameters
+    ----------
+    study : Study
+    result : DesignResult
+        With a design.
+
+    Returns
+    -------
+    StabilityChart
+    """
+    assert result.stability is not None
+    spring = "k_lambda" if result.topology == "boeing" else "I_arm"
+    c, k = result.design["c_lambda"], result.design[spring]
+    low, high = study.envelope.speed.min, study.envelope.speed.max
+    speeds = sorted({low, float(np.sqrt(low * high)), high})
+    return chart(
+        study,
+        ("c_lambda", 0.0, 2.5 * c),
+        (spring, 0.0, 2.5 * k),
+        vary=("speed", speeds),
+        margin=result.stability_margin,
+        design=result.design,
+        load=result.stability.load,
+    )
 
 
 def _decay_figure(study: Study, result: DesignResult) -> Any:

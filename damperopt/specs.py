@@ -6,8 +6,10 @@ in a notebook they can be made directly or changed with `Study.replace`.
 
 from __future__ import annotations
 
+from html import escape
 from typing import Annotated, Any, Literal, Self
 
+import yaml
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag, ValidationError, WithJsonSchema, model_validator
 
 from .errors import ConfigError
@@ -265,6 +267,11 @@ class Study(Record):
     def start(self) -> dict[str, float]:
         """Design at the starts of the layout's design variables [SI]."""
         return {name: self.variable(name).start for name in DESIGN_VARIABLES[self.damper.topology]}
+
+    def _repr_html_(self) -> str:
+        """The study as notebooks show it: every key, in SI."""
+        text = yaml.safe_dump(self.model_dump(mode="json", exclude_none=True), sort_keys=False, allow_unicode=True)
+        return f"<details open><summary>{escape(self.name)}</summary><pre>{escape(text)}</pre></details>"
 
     def replace(self, **changes: Any) -> Study:
         """The study with some keys changed, checked again as a whole.

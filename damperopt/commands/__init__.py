@@ -3,9 +3,10 @@
 from .analyse import analyse
 from .chart import chart
 from .optimise import optimise
+from .report import report
 from .simulate import simulate
 from .studies import init, schema, validate
 from .sweep import sweep
 from .thesis import thesis
 
-__all__ = ["analyse", "chart", "init", "optimise", "schema", "simulate", "sweep", "thesis", "validate"]
+__all__ = ["analyse", "chart", "init", "optimise", "report", "schema", "simulate", "sweep", "thesis", "validate"]

@@ -14,6 +14,7 @@ from ..design import combinations, optimise_each, rank
 from ..errors import Interrupted
 from ..materials import MATERIALS
 from ..output import run_folder, write_ranking, write_run
+from ..report import write_report
 from ..results import DesignResult
 from ..run_files import write_design
 from ..variables import TOPOLOGIES
@@ -30,7 +31,7 @@ def optimise(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes. [default: one per core; one alone for few starts]")
     ] = None,
-    figures: Annotated[bool, typer.Option(help="Draw the figures.")] = True,
+    figures: Annotated[bool, typer.Option(help="Draw the figures and write the report.")] = True,
 ) -> None:
     """Find the lightest damper that is stable with the margin over the whole envelope, and prove it.
 
@@ -60,12 +61,16 @@ def optimise(
         shutil.copyfile(file, place / "config.yaml")
         if len(studies) == 1:
             write_design(place, studies[0], ordered[0], figures)
+            if figures:
+                write_report(place)
             return
         write_ranking(place / "ranking.csv", ordered)
         for position, result in enumerate(ordered, 1):
             own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
             own.mkdir()
             write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
+        if figures:
+            write_report(place)
 
     write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:

@@ -54,7 +54,7 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
 
 def _words(sweep: Sweep, key: str) -> str:
     unit = sweep.units.get(key, "")
-    words = key.split(".")[-1].replace("_", " ").capitalize() if "." not in key or len(key) < 24 else key.replace("_", " ")
+    words = " ".join(key.split(".")[-2:]).replace("_", " ").capitalize()
     return f"{words} [{unit}]" if unit and unit != "1" else words
 
 

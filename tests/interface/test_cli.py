@@ -21,7 +21,11 @@ from damperopt.variables import Solver
 pytestmark = pytest.mark.slow
 
 FILES = {
+    "chart.png",
+    "chart.svg",
     "config.yaml",
+    "linkage.png",
+    "linkage.svg",
     "mass.png",
     "mass.svg",
     "modes.csv",
@@ -29,7 +33,10 @@ FILES = {
     "modes.svg",
     "region.png",
     "region.svg",
+    "report.html",
     "result.json",
+    "tornado.png",
+    "tornado.svg",
 }
 
 
@@ -118,7 +125,7 @@ def test_infeasible_says_what_is_missing_and_what_would_help(configs, tmp_path):
     # the wheel reaches 0.35 m and 50 mm above it are asked for, the lugs allow 0.3 m
     assert "tyre_clearance can reach -0.05 m, required 0.05" in done.stdout
     assert "lug_distance_max of 0.8 m instead of 0.6" in done.stdout
-    assert {f.name for f in (tmp_path / "out").iterdir()} == {"result.json", "config.yaml"}
+    assert {f.name for f in (tmp_path / "out").iterdir()} == {"result.json", "config.yaml", "report.html"}
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from matplotlib.ticker import EngFormatter
 
 from .chart import Curve, Family, StabilityChart
 from .maps import FilledMap
-from .plots import STYLE, SYMBOLS
+from .plots import SYMBOLS, styled
 
 __all__ = ["chart"]
 
@@ -36,7 +36,7 @@ def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = N
     -------
     matplotlib Figure
     """
-    with plt.rc_context(STYLE):
+    with styled():
         if axis is None:
             _, axis = plt.subplots(figsize=(7.5, 5.6))
         if filled is None:

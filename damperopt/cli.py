@@ -35,6 +35,7 @@ def _interrupt(number: int, frame: Any) -> None:
 def main() -> None:
     """Entry point of the command ``damperopt``."""
     signal.signal(signal.SIGINT, _interrupt)
+    os.environ.setdefault("MPLBACKEND", "Agg")  # figures go to files, in worker processes too
     try:
         app()
     except DamperoptError as error:

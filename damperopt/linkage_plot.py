@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .plots import STYLE
+from .plots import styled
 
 __all__ = ["Part", "linkage", "parts_of"]
 
@@ -81,7 +81,7 @@ def linkage(topology: str, design: Mapping[str, float]) -> Any:
     low, high = points.min(axis=0), points.max(axis=0)
     room = 0.15 * (high - low).max()
     heights = [high[2] - low[2] + 2 * room, max(high[1] - low[1], 0.2 * (high[2] - low[2])) + 2 * room]
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), width_ratios=[1, 1])
         for axis, across, view in ((axes[0], 2, "Side"), (axes[1], 1, "Top")):
             for part in parts:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import matplotlib
-
-matplotlib.use("Agg", force=False)
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullLocator
@@ -27,6 +26,7 @@ __all__ = [
     "modes_over_speed",
     "region",
     "save",
+    "styled",
     "tornado",
     "trajectory",
 ]
@@ -55,6 +55,17 @@ LIMITS = {
 }
 
 
+@contextmanager
+def styled() -> Iterator[None]:
+    """Figures in the package's style; unlike `rc_context` it leaves alone what a notebook's backend sets."""
+    before = {key: matplotlib.rcParams[key] for key in STYLE}
+    matplotlib.rcParams.update(STYLE)
+    try:
+        yield
+    finally:
+        matplotlib.rcParams.update(before)
+
+
 def save(figure: Any, folder: Path, name: str) -> list[Path]:
     """Write a figure as PNG and SVG and close it; returns both paths."""
     paths = [folder / f"{name}.png", folder / f"{name}.svg"]
@@ -81,7 +92,7 @@ def modes_over_speed(table: ModeTable, margin: float = 0.0, title: str = "", axe
     -------
     Figure
     """
-    with plt.rc_context(STYLE):
+    with styled():
         if axes is None:
             _, axes = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=[3, 2])
         _draw_modes(table, margin, title, axes)
@@ -157,7 +168,7 @@ def _shade(axis: Any, table: ModeTable, margin: float) -> None:
 
 def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> Any:
     """Modes of the start and of the optimum side by side; returns the Figure."""
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(2, 2, sharex=True, sharey="row", figsize=(10, 6), height_ratios=[3, 2])
         _draw_modes(before, margin, "Before: start of the study", axes[:, 0])
         _draw_modes(after, margin, "After: optimum", axes[:, 1])
@@ -173,7 +184,7 @@ def mass_by_part(result: DesignResult, axis: Any = None) -> Any:
     """Horizontal bars of the mass by part of a result that holds a design; returns the Figure."""
     if result.mass is None:
         raise ValueError(f"no design to draw: {result.message}")
-    with plt.rc_context(STYLE):
+    with styled():
         if axis is None:
             _, axis = plt.subplots(figsize=(7, 0.6 * len(result.mass.parts) + 1.4))
         parts = dict(sorted(result.mass.parts.items(), key=lambda item: item[1]))
@@ -189,7 +200,7 @@ def mass_by_part(result: DesignResult, axis: Any = None) -> Any:
 def tornado(result: DesignResult, shown: int = 12) -> Any:
     """Change of mass for one per cent of each input, the largest first; returns the Figure."""
     strongest = [s for s in result.sensitivities if s.value != 0][:shown][::-1]
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axis = plt.subplots(figsize=(7, 0.3 * len(strongest) + 1.2))
         slopes = [s.elasticity for s in strongest]
         colours = ["#a11d33" if slope > 0 else "#2f6b3a" for slope in slopes]
@@ -204,7 +215,7 @@ def tornado(result: DesignResult, shown: int = 12) -> Any:
 
 def region(record: FeasibleRegion, axis: Any = None) -> Any:
     """Feasible region with the limits that bound it, lines of equal mass and the optimum; returns the Figure."""
-    with plt.rc_context(STYLE):
+    with styled():
         if axis is None:
             _, axis = plt.subplots(figsize=(7.5, 5.6))
         X, Y = record.x, record.y
@@ -268,7 +279,7 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
     """
     panels = [(label, [c for c in curves if c[0] in {*record.states, *record.outputs}]) for label, curves in PANELS]
     panels = [(label, curves) for label, curves in panels if curves]
-    with plt.rc_context(STYLE):
+    with styled():
         figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)
         for axis, (label, curves) in zip(rows[:, 0], panels, strict=True):
             for (name, legend, factor), colour in zip(curves, COLOURS.values(), strict=False):
@@ -300,7 +311,7 @@ def decay(record: Trajectory, check: DecayCheck, speeds: np.ndarray, ratios: np.
     matplotlib Figure
     """
     limit = f"{check.limit:.3g} of the first"
-    with plt.rc_context(STYLE):
+    with styled():
         figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
         first = np.abs(record["yaw_angle"]).max()
         left.plot(record.time, np.degrees(record["yaw_angle"]), color=COLOURS["torsional"], lw=1.2)

@@ -1,10 +1,13 @@
 """Fixtures that every test may use."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 import damperopt
+
+os.environ.setdefault("MPLBACKEND", "Agg")  # no windows; processes that tests start inherit it
 
 ROOT = Path(__file__).parents[1]
 

@@ -8,7 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..plots import STYLE
+from ..plots import styled
 from .run import PointRecord
 from .spec import Sweep
 
@@ -38,7 +38,7 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
     ]
     numeric = [key for key, values in sweep.axes.items() if isinstance(values[0], float)]
     names = [key for key in sweep.axes if key not in numeric]
-    with plt.rc_context(STYLE):
+    with styled():
         if sweep.sampled:
             figure = _clouds(sweep, points, label)
         elif len(numeric) == 2 and not names:

@@ -9,12 +9,14 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import OutputError
+from ..pool import cores, process_pool
 from .points import run_point
 from .spec import Point, Sweep
 
@@ -88,9 +90,9 @@ def stored_records(sweep: Sweep, folder: Path) -> dict[int, PointRecord]:
 
 def run_sweep(
     sweep: Sweep,
-    folder: Path,
-    pool: Pool,
-    in_flight: int,
+    folder: str | Path,
+    pool: Pool | None = None,
+    in_flight: int | None = None,
     on_done: Callable[[PointRecord], Any] = lambda record: None,
 ) -> dict[int, PointRecord]:
     """Run what is missing of a sweep.
@@ -101,12 +103,12 @@ def run_sweep(
     Parameters
     ----------
     sweep : Sweep
-    folder : Path
+    folder : str or Path
         With the points of an earlier run, or none.
-    pool : callable
-        Gives an executor in a context: local processes, or a cluster.
-    in_flight : int
-        Points submitted at a time.
+    pool : callable or None
+        Gives an executor in a context: a cluster, for example; None: processes on this machine.
+    in_flight : int or None
+        Points submitted at a time; None: one for each processor here.
     on_done : callable
         Called with each record when it is on disk.
 
@@ -120,6 +122,8 @@ def run_sweep(
     OutputError
         If a record cannot be written.
     """
+    folder, in_flight = Path(folder), in_flight or cores()
+    pool = pool or partial(process_pool, in_flight)
     records = stored_records(sweep, folder)
     waiting: deque[Point] = deque()
     for point in sweep.points:

@@ -8,7 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..plots import STYLE
+from ..plots import styled
 from .responses import Response, ThesisResponse
 
 __all__ = ["response"]
@@ -26,7 +26,7 @@ def response(figure: ThesisResponse, found: Sequence[Response]) -> Any:
     -------
     matplotlib Figure
     """
-    with plt.rc_context(STYLE):
+    with styled():
         if figure.topology == "rotational":
             return _yaw_and_bending(figure, found[0])
         drawn, axes = plt.subplots(len(found), sharex=True, sharey=True, figsize=(7.5, 1 + 1.5 * len(found)), squeeze=False)

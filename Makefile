@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: optimise test check format benchmark clean
+.PHONY: optimise test check format benchmark docs clean
 
 optimise: $(VENV)/installed
 	$(BIN)/damperopt optimise configs/main_gear.yaml
@@ -28,6 +28,11 @@ benchmark: $(VENV)/installed
 	$(BIN)/python benchmarks/transients.py
 	$(BIN)/python benchmarks/charts.py
 
+# the documentation as HTML; notebooks are run, a warning is an error
+docs: $(VENV)/installed-dev
+	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+	@echo Open docs/_build/html/index.html
+
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("damperopt needs Python 3.11 or newer; set PYTHON=...")'
 	$(PYTHON) -m venv $(VENV)
@@ -39,4 +44,4 @@ $(VENV)/installed-dev: $(VENV)/installed
 	touch $@
 
 clean:
-	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) docs/_build build dist .pytest_cache .mypy_cache .ruff_cache

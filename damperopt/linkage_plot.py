@@ -14,6 +14,9 @@ from .plots import styled
 __all__ = ["Part", "linkage", "parts_of"]
 
 MM = 1e3
+WIDTHS = {"link": 7.0, "support": 6.0, "damper": 5.0, "arm": 2.5}
+"""The thinnest in front: from some side parts lie behind each other."""
+
 COLOURS = {"link": "#4a4a4a", "arm": "#0b6e99", "damper": "#c2571a", "support": "#7a5195"}
 
 
@@ -86,9 +89,9 @@ def linkage(topology: str, design: Mapping[str, float]) -> Any:
         for axis, across, view in ((axes[0], 2, "Side"), (axes[1], 1, "Top")):
             for part in parts:
                 a, b = MM * np.array(part.start), MM * np.array(part.end)
-                width = 5 if part.kind == "damper" else 3
-                axis.plot([a[0], b[0]], [a[across], b[across]], "-", lw=width, color=COLOURS[part.kind], solid_capstyle="round")
-                axis.plot([a[0], b[0]], [a[across], b[across]], "o", ms=5, mfc="white", mec=COLOURS[part.kind])
+                look = {"lw": WIDTHS[part.kind], "zorder": 9 - WIDTHS[part.kind], "color": COLOURS[part.kind]}
+                axis.plot([a[0], b[0]], [a[across], b[across]], "-", solid_capstyle="round", **look)
+                axis.plot([a[0], b[0]], [a[across], b[across]], "o", ms=4, mfc="white", mec=COLOURS[part.kind], zorder=9)
             axis.axvline(0, color="#888888", lw=1, ls="-.") if across == 2 else axis.plot(0, 0, "+", ms=14, color="#888888")
             middle = (low[across] + high[across]) / 2
             span = heights[0 if across == 2 else 1]

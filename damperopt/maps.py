@@ -197,7 +197,7 @@ class StabilityMap:
         return self._completed(out, x, y, lambda roots: roots.real.max(axis=1))
 
     def damping_ratio(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Least damping ratio of all modes, -Re(s)/|s|.
+        """Least damping ratio of all modes, -Re(s)/abs(s).
 
         Parameters
         ----------

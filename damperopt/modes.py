@@ -41,12 +41,12 @@ class ModeTable:
 
     @property
     def frequency(self) -> np.ndarray:
-        """Damped frequency |Im|/(2 pi) [Hz], (m, n)."""
+        """Damped frequency abs(Im)/(2 pi) [Hz], (m, n)."""
         return np.abs(self.eigenvalues.imag) / (2 * np.pi)
 
     @property
     def damping_ratio(self) -> np.ndarray:
-        """-Re/|s|, (m, n); 1 for a decaying real root, -1 for a growing one."""
+        """-Re/abs(s), (m, n); 1 for a decaying real root, -1 for a growing one."""
         return -self.eigenvalues.real / np.maximum(np.abs(self.eigenvalues), 1e-300)
 
     @property

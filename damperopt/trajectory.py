@@ -97,7 +97,7 @@ class Motion:
     cycles : float
         Cycles of the yaw angle that were completed, from its first extremum.
     decay_ratio : float or None
-        Largest |yaw| after m cycles over the first extremum; None if there were fewer cycles.
+        Largest yaw angle in magnitude after m cycles over the first extremum; None if there were fewer cycles.
     amplitude, frequency : float
         Of the yaw angle at the end: half the peak-to-peak value [rad], [Hz].
     mean : float
@@ -193,7 +193,7 @@ def decay(
     cycles: int,
     latest: float = np.inf,
 ) -> Decay | None:
-    """Decay over m cycles: the largest |value| after the 2m-th zero that follows the first extremum, over that extremum.
+    """Decay over m cycles: the largest magnitude after the 2m-th zero that follows the first extremum, over that extremum.
 
     Parameters
     ----------

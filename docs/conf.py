@@ -1,0 +1,28 @@
+"""Sphinx configuration: make docs."""
+
+import os
+from importlib import metadata
+
+project, author = "damperopt", "the damperopt authors"
+release = metadata.version("damperopt")
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+exclude_patterns = ["_build"]
+
+html_theme = "pydata_sphinx_theme"
+html_title = "damperopt"
+html_theme_options = {"show_prev_next": True, "navigation_with_keys": True}
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+suppress_warnings = ["myst.header"]  # the page of coefficients begins its sections where its generator does
+
+# notebooks and the validation page run in their own folders; DOCS_EXECUTE=off builds the text alone
+nb_execution_mode = os.environ.get("DOCS_EXECUTE", "force")
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+
+napoleon_numpy_docstring, napoleon_google_docstring = True, False
+napoleon_use_rtype = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"

@@ -10,6 +10,7 @@ exclude_patterns = ["_build"]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "damperopt"
+html_sidebars = {"**": []}
 html_theme_options = {"show_prev_next": True, "navigation_with_keys": True}
 
 myst_enable_extensions = ["dollarmath", "deflist"]
@@ -21,6 +22,7 @@ nb_execution_mode = os.environ.get("DOCS_EXECUTE", "force")
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+nb_render_markdown_format = "gfm"  # tables that cells write
 
 napoleon_numpy_docstring, napoleon_google_docstring = True, False
 napoleon_use_rtype = False

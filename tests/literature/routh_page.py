@@ -86,10 +86,10 @@ def page():
         for i, (equation, has, follows) in enumerate(zip(equations, printed, derived(layout), strict=True)):
             lacks = sp.factor(sp.simplify(follows.subs({K: k_psi, C: c_psi}) - has))
             text.append(f"\n### a_{i}, ({equation}): {'as derived' if lacks == 0 else 'misprinted'}\n")
-            text.append(f"Printed: $$a_{i} = {sp.latex(has)}$$\n")
-            text.append(f"Derived: $$a_{i} = {sp.latex(short(follows))}$$\n")
+            text.append(f"Printed:\n\n$$a_{i} = {sp.latex(has)}$$\n")
+            text.append(f"Derived:\n\n$$a_{i} = {sp.latex(short(follows))}$$\n")
             if lacks != 0:
-                text.append(f"Derived less printed: $${sp.latex(lacks)}$$\n")
+                text.append(f"Derived less printed:\n\n$${sp.latex(lacks)}$$\n")
     return "\n".join(text).replace("\n\n\n", "\n\n")
 
 

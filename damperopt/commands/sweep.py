@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import time
+from datetime import UTC, datetime
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,7 @@ import typer
 from .. import plots
 from ..errors import Interrupted, OutputError
 from ..pool import cluster, cluster_size, cores, process_pool
+from ..provenance import provenance_of
 from ..sweep import PointRecord, Sweep, dataset, load_sweep, run_sweep, stored_records, sweep_figure
 from ..sweep.run import counts
 from .shared import OutputOption, bar, err, out
@@ -37,6 +39,7 @@ def sweep(
     todo = load_sweep(file)
     folder = output or Path("runs") / file.stem
     _claim(folder, file)
+    clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
     known = len(stored_records(todo, folder))
     if known:
         out.print(f"{known} of {len(todo.points)} points are in {folder} already.", soft_wrap=True)
@@ -57,7 +60,8 @@ def sweep(
         raise Interrupted(
             f"interrupted: {stored} of {len(todo.points)} points are in {folder}; the same command goes on"
         ) from None
-    provenance = {"damperopt": version("damperopt"), "sweep_file": str(file)}
+    source = provenance_of(next(p.study for p in todo.points if p.study), file, started, time.perf_counter() - clock)
+    provenance = {key: str(value) for key, value in source.model_dump().items() if value is not None}
     _write_results(folder, todo, records, provenance)
     for status, count in sorted(counts(records.values()).items()):
         out.print(f"{status}: {count}")
@@ -73,14 +77,14 @@ def _claim(folder: Path, file: Path) -> None:
     marker = folder / "sweep.json"
     if marker.exists():
         theirs = json.loads(marker.read_text(encoding="utf-8")).get("file")
-        if theirs != str(file):
+        if theirs != str(file.resolve()):
             raise OutputError(f"{folder}: holds the sweep of {theirs}; choose another folder with -o")
         return
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise OutputError(f"{folder}: exists already and holds no sweep; choose another with -o, or remove it")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        marker.write_text(json.dumps({"file": str(file)}) + "\n", encoding="utf-8")
+        marker.write_text(json.dumps({"file": str(file.resolve())}) + "\n", encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another folder with -o") from error
 

@@ -14,6 +14,8 @@ from .spec import Sweep
 
 __all__ = ["sweep_figure"]
 
+BLOCKS = ("gear", "tyre", "damper", "envelope", "requirements")
+
 MARKS = ("solved", "stable", "unstable")
 """Whose numbers are shown."""
 
@@ -54,7 +56,9 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
 
 def _words(sweep: Sweep, key: str) -> str:
     unit = sweep.units.get(key, "")
-    words = " ".join(key.split(".")[-2:]).replace("_", " ").capitalize()
+    block, _, name = key.rpartition(".")
+    short = block in BLOCKS and "_" in name  # else the name alone says too little
+    words = (name if short else f"{block.rpartition('.')[2]} {name}").replace("_", " ").strip().capitalize()
     return f"{words} [{unit}]" if unit and unit != "1" else words
 
 

@@ -292,6 +292,8 @@ def _stored(base: Study, key: str, values: Sequence[Any], where: str) -> tuple[f
         value: Any = study
         for part in key.split("."):
             value = getattr(value, part)
+        if isinstance(value, (list, tuple)) and len(value) == 1:  # a load stands for a list of one
+            (value,) = value
         if isinstance(value, float):
             shown.append(value)
         else:

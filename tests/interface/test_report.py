@@ -136,3 +136,18 @@ def test_parts_of_the_drawing_are_those_of_the_theory(topology):
         assert np.linalg.norm(parts["bending arm"]) == pytest.approx(0.6)
         assert np.linalg.norm(parts["damper"]) == pytest.approx(0.2)
         assert parts["damper"] @ parts["lower torque link"] == pytest.approx(0.0)
+
+
+def test_studies_and_results_show_themselves_in_a_notebook(solved):
+    study, result = solved
+    assert f"<b>{result.mass.total:.3f} kg</b>" in result._repr_html_()
+    assert "<th>c_lambda</th>" in result._repr_html_()
+    assert "topology: arreaza" in study.replace(name="a <b> name")._repr_html_()
+    assert "a &lt;b&gt; name" in study.replace(name="a <b> name")._repr_html_()
+
+
+def test_progress_is_shown_when_asked_for(main_gear, capsys):
+    damperopt.optimise(main_gear.replace(damper__topology="boeing", solver__starts=2), progress=True)
+    shown = capsys.readouterr().err
+    assert "boeing, AISI 4340" in shown
+    assert "2/2" in shown

@@ -9,6 +9,7 @@ import time
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from importlib.metadata import version as damperopt_version
 
 import numpy as np
 import pytest
@@ -214,6 +215,11 @@ def test_command_writes_dataset_table_and_figure_and_goes_on(file, tmp_path):
     lines = (tmp_path / "out" / "sweep.csv").read_text().splitlines()
     assert len(lines) == 11
     assert lines[0].startswith("gear_caster_length,damper_torsional_damping,abscissa")
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "out" / "sweep.nc", engine="scipy") as found:
+        assert found.attrs["damperopt"] == damperopt_version("damperopt")
+        assert {"config_sha256", "python", "started", "wall_time", "seed"} <= set(found.attrs)
     again = subprocess.run([*COMMAND, file, "-o", tmp_path / "out"], capture_output=True, text=True)
     assert "10 of 10 points" in again.stdout
     assert not [f for f in (tmp_path / "out").iterdir() if f.name.startswith(".")]
@@ -327,6 +333,12 @@ def test_folder_of_another_sweep_is_left_alone(file, tmp_path):
     done = subprocess.run([*COMMAND, file, "-o", out], capture_output=True, text=True)
     assert done.returncode == 2
     assert "other.yaml" in done.stderr
+
+
+def test_a_load_is_a_number_of_its_axis(main_gear):
+    sweep = sweep_of(main_gear, vary={"envelope.vertical_load": ["100 kN", 125e3], "envelope.speed.max": [80.0, 90.0]})
+    assert sweep.axes == {"envelope.vertical_load": (100e3, 125e3), "envelope.speed.max": (80.0, 90.0)}
+    assert sweep.points[3].study.envelope.loads == (125e3,)
 
 
 def test_shipped_sweeps_are_valid(configs):

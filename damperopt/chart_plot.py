@@ -62,6 +62,9 @@ def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = N
         if any((~curve.hopf).any() for family in record.families for curve in family.curves):
             handles.append(plt.Line2D([], [], color="#333333", lw=1.6, ls=DIVERGENCE))
             labels.append("divergence (else Hopf)")
+        if not any(family.curves for family in record.families) and len({f.origin_stable for f in record.families}) == 1:
+            side = "stable" if record.families[0].origin_stable else "unstable"
+            axis.text(0.5, 0.5, f"{side} all over", transform=axis.transAxes, ha="center", va="center", color="#666666")
         if record.mark is not None:
             (star,) = axis.plot(*record.mark, "*", ms=14, color="#e0a100", mec="black", ls="none", clip_on=False)
             worst = max(family.abscissa for family in record.families if family.abscissa is not None)
@@ -123,7 +126,8 @@ def _family_words(record: StabilityChart, family: Family) -> str:
     frequencies = np.concatenate([curve.frequency[curve.hopf] for curve in family.curves] or [np.zeros(0)])
     words = _value_words(record, family)
     if not family.curves:
-        return f"{words}: no boundary, {'stable' if family.origin_stable else 'unstable'} all over"
+        side = "stable" if family.origin_stable else "unstable"
+        return side if words == "boundary" else f"{words}: {side}"
     if not frequencies.size:
         return words
     low, high = frequencies.min(), frequencies.max()

@@ -24,6 +24,9 @@ __all__ = ["RESPONSE_FORMS", "Row", "judge", "panels", "write_thesis"]
 RESPONSE_FORMS = ("published", "spatial")
 """Geometries in which responses are drawn: printed formulas, and the linkage in space that stands for the multibody model."""
 
+STRUT = "strut"
+"""The form of Thota's gear: stiffness and damping of the strut itself, no layout."""
+
 MISPRINTED = ("3.5", "3.12", "3.23")
 """Figures that show what each misprint does."""
 
@@ -89,9 +92,7 @@ def panels() -> list[tuple[ThesisFigure | ThesisResponse, str]]:
     """Every figure in each form that it is drawn in, in the order of the page."""
     charts = [(figure, form) for figure in FIGURES for form in FORMS]
     return charts + [
-        (figure, form)
-        for figure in RESPONSES
-        for form in (RESPONSE_FORMS if figure.topology != "rotational" else RESPONSE_FORMS[-1:])
+        (figure, form) for figure in RESPONSES for form in (RESPONSE_FORMS if figure.topology != "rotational" else (STRUT,))
     ]
 
 

@@ -18,11 +18,16 @@ __all__ = ["chart"]
 DIVERGENCE = (0, (4, 1.5))
 STABLE_SIDE = ListedColormap(["#cfe8d5"])
 SHADE_PIXELS = 400
+FREQUENCY_STEP, FREQUENCY_CHANGE = 0.25, 0.02
+"""Part of the axes between labels of frequency, and the least change that is worth one."""
+
 LABEL_EDGE, LABEL_SHAPE, LABEL_ROOM = 0.06, np.array([1.0, 2.5]), (0.05, 0.15)
 """Part of the axes without labels; how much less high than wide a label is; room that it wants to curves and to labels."""
 
 
-def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = None) -> Any:
+def chart(
+    record: StabilityChart, filled: FilledMap | None = None, axis: Any = None, neutral: StabilityChart | None = None
+) -> Any:
     """Stability boundaries with their families, the stable side, corners and the design.
 
     Parameters
@@ -31,6 +36,8 @@ def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = N
     filled : FilledMap or None
         Drawn below the curves in place of the stable side.
     axis : matplotlib Axes or None
+    neutral : StabilityChart or None
+        The same with no margin: dotted, so that the margin is seen as what lies between.
 
     Returns
     -------
@@ -59,6 +66,14 @@ def chart(record: StabilityChart, filled: FilledMap | None = None, axis: Any = N
             labels.append(_family_words(record, family))
         if several:
             _label_families(axis, record, colours)
+        else:
+            _label_frequencies(axis, record)
+        if neutral is not None:
+            for family, colour in zip(neutral.families, colours, strict=True):
+                for curve in family.curves:
+                    axis.plot(*curve.points.T, color=colour, lw=1, ls=":")
+            handles.append(plt.Line2D([], [], color="#333333", lw=1, ls=":"))
+            labels.append("no margin")
         if any((~curve.hopf).any() for family in record.families for curve in family.curves):
             handles.append(plt.Line2D([], [], color="#333333", lw=1.6, ls=DIVERGENCE))
             labels.append("divergence (else Hopf)")
@@ -132,6 +147,23 @@ def _family_words(record: StabilityChart, family: Family) -> str:
         return words
     low, high = frequencies.min(), frequencies.max()
     return f"{words}: {low:.3g} Hz" if f"{low:.3g}" == f"{high:.3g}" else f"{words}: {low:.3g} to {high:.3g} Hz"
+
+
+def _label_frequencies(axis: Any, record: StabilityChart) -> None:
+    """The frequency at even steps along the curves, wherever it has changed since the label before."""
+    low, span = np.array([record.x.low, record.y.low]), np.array([record.x.high - record.x.low, record.y.high - record.y.low])
+    for curve in record.families[0].curves:
+        p = (curve.points - low) / span
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])
+        shown = -np.inf
+        for place in np.arange(FREQUENCY_STEP / 2, along[-1], FREQUENCY_STEP):
+            k = int(np.searchsorted(along, place))
+            inside = ((p[k] > LABEL_EDGE) & (p[k] < 1 - LABEL_EDGE)).all()
+            if curve.hopf[k] and inside and abs(curve.frequency[k] - shown) > FREQUENCY_CHANGE * curve.frequency[k]:
+                shown = curve.frequency[k]
+                box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.8}
+                words = f"{shown:.3g} Hz"
+                axis.text(*curve.points[k], words, fontsize=7.5, color="#333333", ha="center", va="center", bbox=box)
 
 
 def _label_families(axis: Any, record: StabilityChart, colours: Any) -> None:

@@ -75,7 +75,9 @@ def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[],
         "linkage": lambda: linkage(result.topology, result.design),
         "mass": lambda: plots.mass_by_part(result),
         "modes": modes,
-        "chart": lambda: chart_plot.chart(design_chart(study, result)),
+        "chart": lambda: chart_plot.chart(
+            design_chart(study, result, result.stability_margin), neutral=design_chart(study, result, 0.0)
+        ),
         "region": lambda: plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])),
         "tornado": lambda: plots.tornado(result),
     }
@@ -84,7 +86,7 @@ def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[],
     return found
 
 
-def design_chart(study: Study, result: DesignResult) -> StabilityChart:
+def design_chart(study: Study, result: DesignResult, margin: float) -> StabilityChart:
     """Stability chart of damping and spring about the design, for the ends and the middle of the envelope's speeds.
 
     Parameters
@@ -92,6 +94,8 @@ def design_chart(study: Study, result: DesignResult) -> StabilityChart:
     study : Study
     result : DesignResult
         With a design.
+    margin : float
+        [1/s]
 
     Returns
     -------
@@ -107,7 +111,7 @@ def design_chart(study: Study, result: DesignResult) -> StabilityChart:
         ("c_lambda", 0.0, 2.5 * c),
         (spring, 0.0, 2.5 * k),
         vary=("speed", speeds),
-        margin=result.stability_margin,
+        margin=margin,
         design=result.design,
         load=result.stability.load,
     )
@@ -148,7 +152,9 @@ def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
         )
 
 
-def write_chart_files(place: Path, record: StabilityChart, filled: FilledMap | None = None) -> None:
+def write_chart_files(
+    place: Path, record: StabilityChart, filled: FilledMap | None = None, neutral: StabilityChart | None = None
+) -> None:
     """Curves as CSV and JSON, and the figure.
 
     Parameters
@@ -157,6 +163,8 @@ def write_chart_files(place: Path, record: StabilityChart, filled: FilledMap | N
         Folder.
     record : StabilityChart
     filled : FilledMap or None
+    neutral : StabilityChart or None
+        The same without margin, in the figure only.
     """
     from . import plots
     from .chart_plot import chart as draw
@@ -165,4 +173,4 @@ def write_chart_files(place: Path, record: StabilityChart, filled: FilledMap | N
     write_chart_json(place / "chart.json", record)
     if filled is not None:
         np.savez_compressed(place / "map.npz", x=filled.x, y=filled.y, values=filled.values, quantity=np.array(filled.quantity))
-    plots.save(draw(record, filled), place, "chart")
+    plots.save(draw(record, filled, neutral=neutral), place, "chart")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -48,23 +49,26 @@ def chart(
             f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"
         )
     folder = run_folder(output, f"{file.stem}-chart")
-    filled = None
+    filled = neutral = None
     with all_or_nothing():
-        record = trace_chart(
+        draw = partial(
+            trace_chart,
             study,
             axis_range(x, study, "--x"),
             axis_range(y, study, "--y"),
             vary=values_of(vary, study, "--vary") if vary else None,
-            margin=quantity(margin, Rate, "--margin"),
             design=values,
             speed=quantity(speed, Speed, "--speed") if speed else None,
             load=quantity(load, Force, "--load") if load else None,
             cells=cells,
             tolerance=tolerance,
         )
+        record = draw(margin=quantity(margin, Rate, "--margin"))
+        if record.margin > 0:
+            neutral = draw(margin=0.0)
         if fill:
             plane = Plane(study, record.x, record.y, record.design, record.speed, record.load, record.margin)
             filled = filled_map(plane, fill)  # type: ignore[arg-type]  # one of the two, checked above
-        write_run(folder, lambda place: write_chart_files(place, record, filled))
+        write_run(folder, lambda place: write_chart_files(place, record, filled, neutral))
     summary.show_chart(out, record)
     out.print(f"\nResults in {folder}", soft_wrap=True)

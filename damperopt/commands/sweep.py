@@ -38,13 +38,13 @@ def sweep(
     """
     todo = load_sweep(file)
     folder = output or Path("runs") / file.stem
-    _claim(folder, file)
+    pool = partial(cluster, scheduler) if scheduler else partial(process_pool, workers or cores())
+    in_flight = workers or (cluster_size(scheduler) if scheduler else cores())
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
+    _claim(folder, file)
     known = len(stored_records(todo, folder))
     if known:
         out.print(f"{known} of {len(todo.points)} points are in {folder} already.", soft_wrap=True)
-    pool = partial(cluster, scheduler) if scheduler else partial(process_pool, workers or cores())
-    in_flight = workers or (cluster_size(scheduler) if scheduler else cores())
     done: list[PointRecord] = []
     try:
         with bar() as shown:

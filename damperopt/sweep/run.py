@@ -81,7 +81,7 @@ def stored_records(sweep: Sweep, folder: Path) -> dict[int, PointRecord]:
             data = json.loads(_file(folder, point.index).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
-        if data.pop("key", None) == point.key(sweep.run):
+        if data.pop("key", None) == sweep.key(point):
             record = PointRecord(**data)
             if record.good or record.status == "invalid":
                 found[point.index] = record
@@ -210,7 +210,7 @@ def _store(
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         unfinished = file.with_suffix(".part")
-        unfinished.write_text(json.dumps({"key": point.key(sweep.run), **vars(record)}), encoding="utf-8")
+        unfinished.write_text(json.dumps({"key": sweep.key(point), **vars(record)}), encoding="utf-8")
         os.replace(unfinished, file)
     except OSError as error:
         raise OutputError(f"{file}: cannot be written: {error.strerror}; finished points are kept") from error

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
+from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -99,11 +100,6 @@ class Point:
     study: Study | None
     problem: str = ""
 
-    def key(self, run: str) -> str:
-        """What identifies the work at this point."""
-        text = self.study.model_dump_json() if self.study else self.problem
-        return sha256(f"{run} {text}".encode()).hexdigest()
-
 
 @dataclass(frozen=True)
 class Sweep:
@@ -139,6 +135,11 @@ class Sweep:
     warm_start: bool
     eigenvalue_speeds: int
     units: dict[str, str]
+
+    def key(self, point: Point) -> str:
+        """What identifies the work at a point: the question, and the program that answers it."""
+        text = point.study.model_dump_json() if point.study else point.problem
+        return sha256(f"{version('damperopt')} {self.run} {self.eigenvalue_speeds} {text}".encode()).hexdigest()
 
 
 def load_sweep(path: str | Path) -> Sweep:

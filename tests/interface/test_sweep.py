@@ -128,6 +128,7 @@ def test_finished_points_are_taken_as_they_are_and_others_are_not(nose, tmp_path
     assert sorted(seen) == [2, 4]
     other = sweep_of(nose.replace(gear__yaw_inertia=120.0), **ANALYSIS)
     assert not stored_records(other, tmp_path)
+    assert not stored_records(sweep_of(nose, **ANALYSIS, eigenvalue_speeds=9), tmp_path)
 
 
 def test_optimised_points_are_those_of_optimise_and_start_from_their_neighbours(main_gear, tmp_path):
@@ -282,6 +283,7 @@ def test_no_scheduler_is_said_in_one_line(file, tmp_path):
     )
     assert done.returncode == 2
     assert "no scheduler answers" in done.stderr
+    assert not (tmp_path / "out").exists()
     assert "Traceback" not in done.stderr
 
 

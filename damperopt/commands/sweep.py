@@ -19,14 +19,16 @@ from ..pool import cluster, cluster_size, cores, process_pool
 from ..provenance import provenance_of
 from ..sweep import PointRecord, Sweep, dataset, load_sweep, run_sweep, stored_records, sweep_figure
 from ..sweep.run import counts
-from .shared import OutputOption, bar, err, out
+from .shared import bar, err, out
 
 __all__ = ["sweep"]
 
 
 def sweep(
     file: Annotated[Path, typer.Argument(metavar="SWEEP", help="What is varied, a YAML file.")],
-    output: OutputOption = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Folder, new or of this sweep. [default: runs/SWEEP]")
+    ] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes, or points in flight. [default: one per core]")] = None,
     scheduler: Annotated[
         str, typer.Option(metavar="tcp://HOST:PORT", help="A running Dask cluster; needs damperopt[cluster].")
@@ -45,13 +47,11 @@ def sweep(
     known = len(stored_records(todo, folder))
     if known:
         out.print(f"{known} of {len(todo.points)} points are in {folder} already.", soft_wrap=True)
-    done: list[PointRecord] = []
     try:
         with bar() as shown:
             task = shown.add_task(todo.name, total=len(todo.points), completed=known)
 
             def on_done(record: PointRecord) -> None:
-                done.append(record)
                 shown.update(task, advance=1, description=f"{todo.name}: last {record.status}")
 
             records = run_sweep(todo, folder, pool, in_flight, on_done)

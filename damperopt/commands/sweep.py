@@ -44,6 +44,8 @@ def sweep(
     in_flight = workers or (cluster_size(scheduler) if scheduler else cores())
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
     _claim(folder, file)
+    if empty := [point for point in todo.points if point.study is None]:
+        err.print(f"{len(empty)} of {len(todo.points)} points make no study, the first: {empty[0].problem}", markup=False)
     known = len(stored_records(todo, folder))
     if known:
         out.print(f"{known} of {len(todo.points)} points are in {folder} already.", soft_wrap=True)

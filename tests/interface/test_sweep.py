@@ -321,6 +321,16 @@ def test_bad_sweeps_are_refused_with_file_line_and_key(configs, tmp_path, case):
     assert f"{path}:" in str(refused.value)
 
 
+def test_points_that_make_no_study_are_said_before_the_work(configs, tmp_path):
+    path = tmp_path / "partly.yaml"
+    path.write_text(f"base: {configs / 'nose_gear_thota.yaml'}\nrun: analyse\nvary: {{gear.yaw_inertia: [-1.0, 90.0]}}\n")
+    done = subprocess.run([*COMMAND, path, "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert done.returncode == 4
+    assert "1 of 2 points make no study" in done.stderr.splitlines()[0]
+    assert "unstable: 1" in done.stdout
+    assert "invalid: 1" in done.stdout
+
+
 def test_missing_base_is_said_with_both_files(tmp_path):
     path = tmp_path / "lost.yaml"
     path.write_text("base: nowhere.yaml\nvary: {gear.caster_length: [0.1]}\n")

@@ -7,17 +7,16 @@ from typing import Annotated
 
 import typer
 
-from .. import config, summary
+from .. import summary
 from ..arguments import speed_grid
 from ..certify import certify
 from ..critical import critical_speeds
 from ..modes import track_modes
 from ..output import run_folder, write_modes, write_run
-from ..results import load_result
 from ..run_files import draw_modes
 from ..stability import linear_gear
 from ..worst import worst_points
-from .shared import ConfigArgument, DesignOption, OutputOption, out, with_design
+from .shared import ConfigArgument, DesignOption, OutputOption, out, study_and_design
 
 __all__ = ["analyse"]
 
@@ -29,10 +28,7 @@ def analyse(
     output: OutputOption = None,
 ) -> None:
     """Modes over speed, critical speeds and the exact certificate of a given design."""
-    study = config.load(file)
-    values = None
-    if design is not None:
-        study, values = with_design(study, load_result(design), file, design)
+    study, values = study_and_design(file, design)
     grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)

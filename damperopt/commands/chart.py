@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .. import config, summary
+from .. import summary
 from ..arguments import axis_range, quantity, values_of
 from ..chart import chart as trace_chart
 from ..errors import ConfigError
@@ -16,9 +16,8 @@ from ..maps import filled_map
 from ..output import run_folder, write_run
 from ..plane import Plane
 from ..records import Force, Rate, Speed
-from ..results import load_result
 from ..run_files import write_chart_files
-from .shared import ConfigArgument, OutputOption, all_or_nothing, out, with_design
+from .shared import ConfigArgument, OutputOption, all_or_nothing, out, study_and_design
 
 __all__ = ["chart"]
 
@@ -40,10 +39,7 @@ def chart(
     output: OutputOption = None,
 ) -> None:
     """Stability chart of two quantities: the boundary traced to a tolerance, its type and frequency."""
-    study = config.load(file)
-    values = None
-    if design is not None:
-        study, values = with_design(study, load_result(design), file, design)
+    study, values = study_and_design(file, design)
     if fill not in ("", "abscissa", "damping") or (fill and vary):
         raise ConfigError(
             f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"

@@ -22,9 +22,10 @@ from rich.progress import (
 )
 from rich.text import Text
 
+from .. import config
 from ..errors import ConfigError, Interrupted
 from ..pool import cores
-from ..results import DesignResult
+from ..results import DesignResult, load_result
 from ..specs import Study
 from ..variables import DESIGN_VARIABLES
 
@@ -38,7 +39,7 @@ __all__ = [
     "out",
     "pressed",
     "progress",
-    "with_design",
+    "study_and_design",
     "workers_for",
 ]
 
@@ -113,7 +114,13 @@ def workers_for(studies: Sequence[Study]) -> int:
     return cores()
 
 
-def with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
+def study_and_design(file: Path, design: Path | None) -> tuple[Study, dict[str, float] | None]:
+    """A study, and the design of a result with the layout that it was made for; without one, None."""
+    study = config.load(file)
+    return (study, None) if design is None else _with_design(study, load_result(design), file, design)
+
+
+def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
     """The study with the layout and material that the result was made for, and its design."""
     names = DESIGN_VARIABLES.get(result.topology, ())
     if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):

@@ -7,17 +7,16 @@ from typing import Annotated
 
 import typer
 
-from .. import config, summary
+from .. import summary
 from ..arguments import disturbance_of, quantity
 from ..errors import ConfigError
 from ..events import ExactSimulator
 from ..integrators import ENGINES
 from ..output import run_folder, write_motion, write_run, write_trajectory
 from ..records import Force, Speed, Time
-from ..results import load_result
 from ..simulate import Simulator
 from ..trajectory import motion_of
-from .shared import ConfigArgument, DesignOption, OutputOption, all_or_nothing, out, with_design
+from .shared import ConfigArgument, DesignOption, OutputOption, all_or_nothing, out, study_and_design
 
 __all__ = ["simulate"]
 
@@ -39,10 +38,7 @@ def simulate(
 
     Exit code 0 also where the motion diverges: that is an answer. 2: the question is not well posed.
     """
-    study = config.load(file)
-    values = None
-    if design is not None:
-        study, values = with_design(study, load_result(design), file, design)
+    study, values = study_and_design(file, design)
     given = {"release": release or [], "kick": kick or [], "step": step or [], "unbalance": unbalance or []}
     required = study.requirements.decay if study.requirements else None
     if any(given.values()):

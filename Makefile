@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: optimise test check format benchmark docs clean
+.PHONY: optimise test check format benchmark docs notebooks clean
 
 optimise: $(VENV)/installed
 	$(BIN)/damperopt optimise configs/main_gear.yaml
@@ -32,6 +32,10 @@ benchmark: $(VENV)/installed
 docs: $(VENV)/installed-dev
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 	@echo Open docs/_build/html/index.html
+
+# the notebooks as .ipynb beside their text, for Jupyter; the text is what is kept
+notebooks: $(VENV)/installed-dev
+	$(BIN)/python -m jupytext --to ipynb --update docs/notebooks/*.md
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("damperopt needs Python 3.11 or newer; set PYTHON=...")'

@@ -6,7 +6,7 @@ from importlib import metadata
 project, author = "damperopt", "the damperopt authors"
 release = metadata.version("damperopt")
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx-mathjax-offline"]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "notebooks/*.ipynb"]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "damperopt"

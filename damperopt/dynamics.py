@@ -103,13 +103,14 @@ def _equations(
     # theory page, section 2: psi yaw, delta lateral bending, y string deflection, phi rake, e caster, a half contact
     # length, sigma relaxation length, kappa tread-width moment
     psi, psi_t, y = x["yaw_angle"], x["yaw_rate"], x["string_deflection"]
-    phi, _e, a, sigma = gear.rake_angle, gear.caster_length, tyre.half_contact_length, tyre.relaxation_length
+    phi, a, sigma = gear.rake_angle, tyre.half_contact_length, tyre.relaxation_length
     e_eff = effective_caster(gear)
     theta = psi * ca.cos(phi)
     F_y, M_z = side_force(tyre, y, F_z), aligning_moment(tyre, y, F_z, elements)
     M_kappa = tyre.tread_width_moment * ca.cos(phi) * psi_t / V
     M_load = F_z * ca.sin(phi) * e_eff * ca.sin(theta)
 
+    # damper.torque acts on the piston: -T_damper of the page
     torque = damper.torque - e_eff * F_y - M_z - M_kappa + M_load + yaw_torque
     psi_tt = torque / gear.yaw_inertia
     if gear.friction is not None:

@@ -61,10 +61,10 @@ class _Cornered:
     """Dead bands out of |x| and its slope; `Smooth` and `Switched` say what these two are."""
 
     def absolute(self, name: str, x: Any, width: Any) -> Any:
-        raise NotImplementedError
+        raise NotImplementedError  # both versions have one of their own: rounded, or with a switch
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
-        raise NotImplementedError
+        raise NotImplementedError  # as above
 
     def gap(self, name: str, x: Any, half_width: Any, width: Any) -> tuple[Any, Any]:
         upper, lower = (f"{name} +", x - half_width, width), (f"{name} -", x + half_width, width)

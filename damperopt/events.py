@@ -154,11 +154,10 @@ class _Fast:
         self._buffer, self._evaluate = function.buffer()
         self._in = [np.zeros(e.numel()) for e in inputs]
         self._out = [np.zeros(e.numel()) for e in outputs]
-        # the stubs of CasADi declare neither memoryviews nor both arguments
         for k, array in enumerate(self._in):
-            self._buffer.set_arg(k, memoryview(array))  # type: ignore[arg-type, call-arg]
+            self._buffer.set_arg(k, memoryview(array))  # type: ignore[arg-type, call-arg]  # CasADi's stub lacks memoryviews
         for k, array in enumerate(self._out):
-            self._buffer.set_res(k, memoryview(array))  # type: ignore[arg-type, call-arg]
+            self._buffer.set_res(k, memoryview(array))  # type: ignore[arg-type, call-arg]  # and the second argument
 
     def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:
         """Outputs, in arrays that the next call overwrites."""

@@ -32,7 +32,11 @@ AROUND = np.tan(np.linspace(-1.5, 1.5, 31))
 """Frequencies about a resonance, in units of its half width."""
 
 ROUNDS, LONGEST, ROOM = 40, 0.05, 0.02
+"""Halvings of a step in frequency at most; the longest chord, and the room about the plane, in fractions of the ranges."""
+
 BISECTIONS, EDGE = 50, 1e-10
+"""For the end of a piece; and how near an edge of the plane an end is on it but for rounding."""
+
 JOIN = 30
 """Tolerances between two ends of boundary that meet at a corner, at most."""
 
@@ -122,8 +126,8 @@ class _Piece:
         return _Piece(np.vstack([self.points, other.points]), np.append(self.w, other.w), corners)
 
 
-def _frequencies(plane: Plane, joint: Joint) -> np.ndarray:
-    """Even ratios up to what no eigenvalue of the plane exceeds, and more about each resonance of the free joint.
+def _frequencies(plane: Plane) -> np.ndarray:
+    """Even ratios up to what no eigenvalue of the plane exceeds, and more about each resonance at its corners.
 
     The norm of a balanced matrix bounds its eigenvalues and is convex: largest at a corner of the plane.
     """
@@ -138,7 +142,7 @@ def _frequencies(plane: Plane, joint: Joint) -> np.ndarray:
 
 
 def _hopf_pieces(plane: Plane, joint: Joint, tolerance: float) -> list[_Piece]:
-    w = _frequencies(plane, joint)
+    w = _frequencies(plane)
     places = joint.at(plane.margin, w)
     for _ in range(ROUNDS):
         near = _crosses_box(places[:-1], places[1:])

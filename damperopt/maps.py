@@ -175,9 +175,7 @@ class StabilityMap:
         ndarray
             (k, m) bool
         """
-        out = np.empty((len(y), len(x)), np.bool_)
-        self._sign(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
-        return out
+        return _filled(self._sign, x, y, np.bool_)
 
     def abscissa(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Spectral abscissa [1/s].
@@ -192,9 +190,7 @@ class StabilityMap:
         ndarray
             (k, m); no root lies to the right of a value by more than 1e-8 of the root.
         """
-        out = np.empty((len(y), len(x)))
-        self._abscissa(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
-        return self._completed(out, x, y, lambda roots: roots.real.max(axis=1))
+        return self._completed(_filled(self._abscissa, x, y), x, y, lambda roots: roots.real.max(axis=1))
 
     def damping_ratio(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Least damping ratio of all modes, -Re(s)/abs(s).
@@ -209,9 +205,9 @@ class StabilityMap:
         ndarray
             (k, m), from all roots.
         """
-        out = np.empty((len(y), len(x)))
-        self._damping(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
-        return self._completed(out, x, y, lambda roots: (-roots.real / np.maximum(np.abs(roots), TINY)).min(axis=1))
+        return self._completed(
+            _filled(self._damping, x, y), x, y, lambda roots: (-roots.real / np.maximum(np.abs(roots), TINY)).min(axis=1)
+        )
 
     def _completed(self, out: np.ndarray, x: np.ndarray, y: np.ndarray, measure: Callable[..., np.ndarray]) -> np.ndarray:
         """Pixels whose iteration did not converge, by eigenvalues."""
@@ -220,6 +216,13 @@ class StabilityMap:
             u, v = ((values - a.low) / (a.high - a.low) for values, a in ((x[columns], self.plane.x), (y[rows], self.plane.y)))
             out[rows, columns] = measure(np.linalg.eigvals(self.plane.matrices(u, v)))
         return out
+
+
+def _filled(kernel: Callable[..., None], x: np.ndarray, y: np.ndarray, kind: type = float) -> np.ndarray:
+    """What a kernel gives at every pixel (k, m)."""
+    out: np.ndarray = np.empty((len(y), len(x)), kind)
+    kernel(np.ascontiguousarray(x, float), np.ascontiguousarray(y, float), out)
+    return out
 
 
 def _compiled(source: str, name: str) -> Callable[..., None]:

@@ -64,7 +64,10 @@ def sweep(
         ) from None
     source = provenance_of(next(p.study for p in todo.points if p.study), file, started, time.perf_counter() - clock)
     provenance = {key: str(value) for key, value in source.model_dump().items() if value is not None}
-    _write_results(folder, todo, records, provenance)
+    try:
+        _write_results(folder, todo, records, provenance)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written: {error.strerror}; finished points are kept") from error
     for status, count in sorted(counts(records.values()).items()):
         out.print(f"{status}: {count}")
     bad = [record for record in records.values() if not record.good]
@@ -78,7 +81,10 @@ def _claim(folder: Path, file: Path) -> None:
     """Make the folder of a sweep, or see that it is one of this file."""
     marker = folder / "sweep.json"
     if marker.exists():
-        theirs = json.loads(marker.read_text(encoding="utf-8")).get("file")
+        try:
+            theirs = json.loads(marker.read_text(encoding="utf-8"))["file"]
+        except (OSError, ValueError, TypeError, KeyError):
+            raise OutputError(f"{marker}: does not name the sweep of its folder; choose another folder with -o") from None
         if theirs != str(file.resolve()):
             raise OutputError(f"{folder}: holds the sweep of {theirs}; choose another folder with -o")
         return

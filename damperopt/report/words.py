@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..records import LoadRange
 from ..results import UNITS, DesignResult
 from ..specs import Study
 
@@ -47,7 +49,7 @@ def asked(study: Study) -> list[str]:
     study : Study
     """
     required, speed = study.required, study.envelope.speed
-    loads = ", ".join(f"{load / 1e3:g}" for load in study.envelope.loads)
+    loads = _loads(study.envelope.loads, isinstance(study.envelope.vertical_load, LoadRange))
     found = [
         f"The lightest {LAYOUTS[study.damper.topology]} in {study.material.name}, geometry {study.damper.geometry}, "
         f"order {study.gear.order}.",
@@ -60,6 +62,11 @@ def asked(study: Study) -> list[str]:
             "at every speed, by the nonlinear model."
         )
     return found
+
+
+def _loads(loads: Sequence[float], ends: bool) -> str:
+    """Loads in kN, or the ends of their range."""
+    return (" to " if ends else ", ").join(f"{load / 1e3:g}" for load in loads)
 
 
 def answer(result: DesignResult) -> str:
@@ -124,10 +131,12 @@ def certificate(result: DesignResult) -> str:
         "(Sturm) show that none of the stability conditions changes sign",
         "bernstein": "exact Bernstein bounds over rectangles of speed and load",
     }[proof.method]
-    loads = f"{' to ' if proof.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in proof.loads)
+    loads = _loads(proof.loads, proof.method == "bernstein")
     where = f"margin {proof.margin:g} 1/s, every real speed from {proof.speed[0]:g} to {proof.speed[1]:g} m/s, {loads} kN"
-    verdict = "Proved in rational arithmetic, without rounding" if proof.proved else "NOT proved"
-    return f"{verdict}: {where}. How: {method}. {proof.reason[:1].upper()}{proof.reason[1:]}."
+    reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
+    if not proof.proved:
+        return f"NOT proved: {where}. {reason}"
+    return f"Proved in rational arithmetic, without rounding: {where}. How: {method}. {reason}"
 
 
 def verification(result: DesignResult) -> list[str]:

@@ -81,7 +81,7 @@ def stored_records(sweep: Sweep, folder: Path) -> dict[int, PointRecord]:
             data = json.loads(_file(folder, point.index).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
-        if data.pop("key", None) == sweep.key(point):
+        if isinstance(data, dict) and data.pop("key", None) == sweep.key(point):
             record = PointRecord(**data)
             if record.good or record.status == "invalid":
                 found[point.index] = record
@@ -175,6 +175,11 @@ def _answer(future: Future) -> dict[str, Any]:
 
 def _neighbour(sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> dict[str, float] | None:
     """Design of the nearest finished point of the same layout: steps along numbers count by their span, names as one each."""
+    assert point.study is not None
+    layout = point.study.damper.topology
+    solved = [r for r in records.values() if r.status == "solved" and r.result and r.result["topology"] == layout]
+    if not solved:
+        return None
     spans = {
         key: np.ptp([float(p.values[key]) for p in sweep.points]) or 1.0
         for key, value in point.values.items()
@@ -187,11 +192,6 @@ def _neighbour(sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> d
             for key, value in point.values.items()
         )
 
-    assert point.study is not None
-    layout = point.study.damper.topology
-    solved = [r for r in records.values() if r.status == "solved" and r.result and r.result["topology"] == layout]
-    if not solved:
-        return None
     nearest = min(solved, key=lambda record: distance(sweep.points[record.index]))
     assert nearest.result is not None
     return nearest.result["design"]

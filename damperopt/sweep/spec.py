@@ -119,7 +119,7 @@ class Sweep:
     points : tuple of Point
         The grid in the order of the axes, the last one fastest; samples within.
     warm_start : bool
-        Whether a point also starts from its nearest finished neighbour's design.
+        Whether a point takes its nearest finished neighbour's design for the study's own start; the other starts stay.
     eigenvalue_speeds : int
         Speeds at which eigenvalues are stored.
     units : dict

@@ -1,5 +1,6 @@
 """The report: says what the result says, needs nothing else, opens in a browser."""
 
+import dataclasses
 import html
 import re
 import shutil
@@ -151,3 +152,14 @@ def test_progress_is_shown_when_asked_for(main_gear, capsys):
     shown = capsys.readouterr().err
     assert "boeing, AISI 4340" in shown
     assert "2/2" in shown
+
+
+def test_a_range_of_loads_is_a_range_and_nothing_unproved_is_explained(solved):
+    from damperopt.report import words
+
+    study, result = solved
+    assert "at 100 to 150 kN" in words.asked(study.replace(envelope__vertical_load={"min": 100e3, "max": 150e3}))[1]
+    assert "at 100, 150 kN" in words.asked(study.replace(envelope__vertical_load=[100e3, 150e3]))[1]
+    missed = result.model_copy(update={"certificate": dataclasses.replace(result.certificate, proved=False, reason="missed")})
+    assert words.certificate(missed).startswith("NOT proved")
+    assert "How:" not in words.certificate(missed)

@@ -353,6 +353,17 @@ def test_a_load_is_a_number_of_its_axis(main_gear):
     assert sweep.points[3].study.envelope.loads == (125e3,)
 
 
+@pytest.mark.parametrize("text", ["{", "[]", "{}"])
+def test_a_spoilt_marker_is_said_without_a_traceback(file, tmp_path, text):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "sweep.json").write_text(text)
+    done = subprocess.run([*COMMAND, file, "-o", out], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "does not name the sweep of its folder" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_shipped_sweeps_are_valid(configs):
     counts = {f.stem: len(load_sweep(f).points) for f in (configs / "sweeps").glob("*.yaml")}
     assert counts == {"margin": 15, "decay": 14, "ranking": 18, "envelope": 16, "scatter": 128}

@@ -35,7 +35,7 @@ docs: $(VENV)/installed-dev
 
 # the notebooks as .ipynb beside their text, for Jupyter; the text is what is kept
 notebooks: $(VENV)/installed-dev
-	$(BIN)/python -m jupytext --to ipynb --update docs/notebooks/*.md
+	$(BIN)/python -m jupytext --to ipynb --update notebooks/*.md
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("damperopt needs Python 3.11 or newer; set PYTHON=...")'

@@ -17,8 +17,10 @@ from collections.abc import Callable
 import numpy as np
 
 import damperopt
-from damperopt.boundary import trace
-from damperopt.joint import boundary, joint_of
+from damperopt.charts.explicit import boundary, joint_of
+from damperopt.charts.maps import StabilityMap
+from damperopt.charts.plane import Axis, Plane
+from damperopt.charts.tracing import trace
 
 STUDY = "configs/main_gear.yaml"
 X, Y = ("c_lambda", 0.0, 2e5), ("I_arm", 0.0, 1e-5)
@@ -33,16 +35,14 @@ def shortest(work: Callable[[], object], repeats: int = 5) -> float:
     return best
 
 
-def plane_of(study: damperopt.Study) -> damperopt.Plane:
-    return damperopt.Plane(
-        study, damperopt.Axis.of(study, *X), damperopt.Axis.of(study, *Y), study.start, 40.0, 150e3, margin=0.1
-    )
+def plane_of(study: damperopt.Study) -> Plane:
+    return Plane(study, Axis.of(study, *X), Axis.of(study, *Y), study.start, 40.0, 150e3, margin=0.1)
 
 
 def maps(study: damperopt.Study) -> None:
     plane = plane_of(study)
     begin = time.perf_counter()
-    kernels = damperopt.StabilityMap(plane)
+    kernels = StabilityMap(plane)
     few = np.linspace(0, 1, 4)
     for kernel in (kernels.kept, kernels.abscissa, kernels.damping_ratio):
         kernel(2e5 * few, 1e-5 * few)
@@ -86,11 +86,11 @@ def curves(study: damperopt.Study) -> None:
             )
 
 
-def traced(plane: damperopt.Plane, tolerance: float) -> list:
+def traced(plane: Plane, tolerance: float) -> list:
     return trace(plane.excess, tolerance=tolerance)
 
 
-def explicit(plane: damperopt.Plane, tolerance: float) -> list:
+def explicit(plane: Plane, tolerance: float) -> list:
     found = joint_of(plane)
     assert found is not None
     return boundary(plane, found, tolerance) or []

@@ -2,7 +2,7 @@
 
     python benchmarks/optimise.py [--layouts boeing,utas,arreaza] [--evolution-generations 150]
 
-All methods get the same mass, strength and geometry functions (`damperopt.DesignProblem`) and the same bounds. The
+All methods get the same mass, strength and geometry functions (`DesignProblem`) and the same bounds. The
 others impose stability as users would by hand, as the spectral abscissa of numpy.linalg.eigvals at 40 speeds; damperopt
 imposes and proves it for every speed. Each row: wall time in one process, best mass, share of the starts that end within
 0.1 % of the best mass of all, and the largest abscissa of the answer over the continuous speed range.
@@ -19,7 +19,8 @@ import numpy as np
 from scipy.optimize import differential_evolution, minimize
 
 import damperopt
-from damperopt.multistart import starting_designs
+from damperopt.optimum.multistart import starting_designs
+from damperopt.optimum.problem import DesignProblem
 
 STUDY = Path(__file__).parents[1] / "configs" / "main_gear.yaml"
 SPEEDS = np.geomspace(5, 100, 40)
@@ -28,7 +29,7 @@ SPEEDS = np.geomspace(5, 100, 40)
 class SameFunctions:
     """Mass and constraints over the scaled design variables, as a user would hand them to SciPy."""
 
-    def __init__(self, problem: damperopt.DesignProblem):
+    def __init__(self, problem: DesignProblem):
         self.problem, self.margin = problem, problem.study.required.stability_margin
         lower, upper = problem.bounds()
         self.bounds = list(zip(lower[:-1], upper[:-1], strict=True))
@@ -59,7 +60,7 @@ def ours(study):
 
 
 def slsqp(study):
-    functions = SameFunctions(damperopt.DesignProblem(study))
+    functions = SameFunctions(DesignProblem(study))
     found = []
     for start in starting_designs(functions.problem):
         x0 = np.array([v.scale(start[v.name]) for v in functions.problem.variables[:-1]])
@@ -77,7 +78,7 @@ def slsqp(study):
 
 
 def evolution(study, generations):
-    functions = SameFunctions(damperopt.DesignProblem(study))
+    functions = SameFunctions(DesignProblem(study))
     solution = differential_evolution(
         functions.penalised, functions.bounds, rng=1, maxiter=generations, popsize=15, tol=1e-8, polish=False
     )

@@ -22,10 +22,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import damperopt
-from damperopt.decay import DecayAnalysis
 from damperopt.dynamics import build
-from damperopt.elements import Smooth
-from damperopt.integrators import Integrator, has_compiler
+from damperopt.expressions.corners import Smooth
+from damperopt.motion.decay import DecayAnalysis
+from damperopt.motion.integrators import Integrator, has_compiler
 from damperopt.symbols import data_values, symbolic
 
 STUDY = "configs/main_gear.yaml"

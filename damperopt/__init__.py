@@ -7,81 +7,87 @@
 'solved'
 """
 
+from __future__ import annotations
+
+import warnings
 from importlib import import_module
+from typing import Any
 
-from .certify import certify
-from .chart import StabilityChart, chart
-from .config import json_schema, load, loads
-from .critical import critical_speeds
-from .decay import DecayAnalysis
-from .design import combinations, optimise, optimise_each, rank
-from .disturbances import Disturbance
-from .errors import CertificateError, ConfigError, DamperoptError, OutputError
-from .events import ExactSimulator, simulate_exactly
-from .joint import joint_boundary
-from .maps import FilledMap, StabilityMap, filled_map
-from .modes import ModeTable, track_modes
-from .plane import Axis, Plane
-from .problem import DesignProblem
-from .results import Certificate, DesignResult, load_result
-from .simulate import Simulator, simulate
-from .specs import Study
-from .stability import LinearGear, linear_gear, spectral_abscissa
-from .trajectory import Motion, Trajectory, motion_of
-from .verify import GridCheck, check_decay, check_grid
-from .worst import worst_points
+_HOME = {
+    "Certificate": "results",
+    "CertificateError": "errors",
+    "ConfigError": "errors",
+    "DamperoptError": "errors",
+    "DesignResult": "results",
+    "Disturbance": "study.disturbances",
+    "OutputError": "errors",
+    "Study": "study.study",
+    "certify": "proof.certify",
+    "chart": "charts.chart",
+    "check_decay": "proof.check",
+    "check_grid": "proof.check",
+    "combinations": "design",
+    "critical_speeds": "stability.critical",
+    "filled_map": "charts.maps",
+    "joint_boundary": "charts.explicit",
+    "json_schema": "study.config",
+    "linear_gear": "stability.linear",
+    "load": "study.config",
+    "load_result": "results",
+    "loads": "study.config",
+    "motion_of": "motion.trajectory",
+    "optimise": "design",
+    "optimise_each": "design",
+    "rank": "design",
+    "simulate": "motion.simulate",
+    "simulate_exactly": "motion.exact",
+    "spectral_abscissa": "stability.linear",
+    "track_modes": "stability.modes",
+    "worst_points": "stability.worst",
+}
+"""Module of each public name; it is imported when the name is used."""
+
+_MOVED = {
+    "Axis": "charts.plane",
+    "DecayAnalysis": "motion.decay",
+    "DesignProblem": "optimum.problem",
+    "ExactSimulator": "motion.exact",
+    "FilledMap": "charts.maps",
+    "GridCheck": "proof.check",
+    "LinearGear": "stability.linear",
+    "ModeTable": "stability.modes",
+    "Motion": "motion.trajectory",
+    "Plane": "charts.plane",
+    "Simulator": "motion.simulate",
+    "StabilityChart": "charts.chart",
+    "StabilityMap": "charts.maps",
+    "Trajectory": "motion.trajectory",
+}
+"""Names that were public in 0.1 and are now reached by their room."""
+
+__all__ = sorted(_HOME)  # one list, not two
 
 
-def __getattr__(name: str) -> object:
-    """`damperopt.plots` is imported when it is used: matplotlib takes its time."""
+def __getattr__(name: str) -> Any:
+    """Public names are imported when they are used; a name of version 0.1 says where it has moved to."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("damperopt")
+    if name == "sweep":
+        return import_module(".sweep", __name__)
+    if name in _HOME:
+        return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    if name in _MOVED:
+        message = f"damperopt.{name} is now damperopt.{_MOVED[name]}.{name}; the old name goes with the next version"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(import_module(f".{_MOVED[name]}", __name__), name)
     if name == "plots":
-        return import_module(".plots", __name__)
+        message = "damperopt.plots is now damperopt.figures; the old name goes with the next version"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return import_module(".figures.style", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-__all__ = [
-    "Axis",
-    "Certificate",
-    "CertificateError",
-    "ConfigError",
-    "DamperoptError",
-    "DecayAnalysis",
-    "DesignProblem",
-    "DesignResult",
-    "Disturbance",
-    "ExactSimulator",
-    "FilledMap",
-    "GridCheck",
-    "LinearGear",
-    "ModeTable",
-    "Motion",
-    "OutputError",
-    "Plane",
-    "Simulator",
-    "StabilityChart",
-    "StabilityMap",
-    "Study",
-    "Trajectory",
-    "certify",
-    "chart",
-    "check_decay",
-    "check_grid",
-    "combinations",
-    "critical_speeds",
-    "filled_map",
-    "joint_boundary",
-    "json_schema",
-    "linear_gear",
-    "load",
-    "load_result",
-    "loads",
-    "motion_of",
-    "optimise",
-    "optimise_each",
-    "rank",
-    "simulate",
-    "simulate_exactly",
-    "spectral_abscissa",
-    "track_modes",
-    "worst_points",
-]
+def __dir__() -> list[str]:
+    return [*__all__, "__version__", "sweep"]

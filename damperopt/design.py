@@ -10,7 +10,9 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from .answer import (
+from .errors import ConfigError
+from .motion.decay import decay_analysis
+from .optimum.answer import (
     SAME_MASS,
     constraint_results,
     decided_by,
@@ -19,14 +21,14 @@ from .answer import (
     not_checked,
     start_result,
 )
-from .certify import certify
-from .decay import decay_analysis
-from .diagnose import diagnose
-from .errors import ConfigError
-from .exchange import EnvelopeSolution, best_local, held_again
-from .multistart import StartOutcome, run_starts, solver_for, starting_designs
-from .pool import executor
-from .problem import ROD, DesignProblem
+from .optimum.diagnose import diagnose
+from .optimum.exchange import EnvelopeSolution, best_local, held_again
+from .optimum.multistart import StartOutcome, run_starts, solver_for, starting_designs
+from .optimum.problem import ROD, DesignProblem
+from .optimum.sensitivity import sensitivities
+from .optimum.solve import NlpSolver
+from .proof.certify import certify
+from .proof.check import check_decay, check_grid
 from .provenance import provenance_of
 from .results import (
     Certificate,
@@ -35,12 +37,10 @@ from .results import (
     MassResult,
     Verification,
 )
-from .sensitivity import sensitivities
-from .solve import NlpSolver
-from .specs import Study
-from .variables import TOPOLOGIES
-from .verify import check_decay, check_grid
-from .worst import worst_points
+from .stability.worst import worst_points
+from .study.study import Study
+from .study.variables import TOPOLOGIES
+from .workers import executor
 
 __all__ = ["combinations", "optimise", "optimise_each", "rank"]
 

@@ -15,14 +15,14 @@ from typing import Any
 
 import casadi as ca
 
-from .dae import DAE
-from .damper_torque import DamperTorque, damper_torque
-from .dampers import linkage
-from .elements import Elements, Linear
-from .sections import section_modulus
+from .expressions.corners import Elements, Linear
+from .expressions.dae import DAE
+from .linkages.planar import linkage
+from .linkages.torque import DamperTorque, damper_torque
+from .strength.sections import section_modulus
+from .study.variables import DESIGN_VARIABLES
 from .symbols import SymbolicStudy
-from .tyres import aligning_moment, side_force, slip_angle
-from .variables import DESIGN_VARIABLES
+from .tyres.string import aligning_moment, side_force, slip_angle
 
 __all__ = ["build", "effective_caster"]
 

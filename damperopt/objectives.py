@@ -16,9 +16,9 @@ from typing import Any
 import casadi as ca
 
 from .dynamics import effective_caster
-from .linkage import Linkage
-from .sections import area, area_for_modulus, section_modulus
-from .tyres import peak_aligning_moment, peak_side_force
+from .linkages.base import Linkage
+from .strength.sections import area, area_for_modulus, section_modulus
+from .tyres.string import peak_aligning_moment, peak_side_force
 
 __all__ = ["LimitEvent", "allowable_stress", "arm_stress", "bore", "limit_event", "mass_parts", "rod_diameters", "rod_length"]
 

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from .results import Provenance
-from .specs import Study
+from .study.study import Study
 
 __all__ = ["provenance_of"]
 

@@ -12,7 +12,7 @@ from typing import Any
 import casadi as ca
 from pydantic import BaseModel
 
-from .specs import Study
+from .study.study import Study
 
 __all__ = ["SymbolicStudy", "data_names", "data_values", "symbolic"]
 

@@ -7,15 +7,15 @@ from typing import Annotated
 
 import typer
 
-from .. import summary
-from ..arguments import speed_grid
-from ..certify import certify
-from ..critical import critical_speeds
-from ..modes import track_modes
-from ..output import run_folder, write_modes, write_run
-from ..run_files import draw_modes
-from ..stability import linear_gear
-from ..worst import worst_points
+from ..output.folder import run_folder, write_modes, write_run
+from ..output.gallery import draw_modes
+from ..proof.certify import certify
+from ..stability.critical import critical_speeds
+from ..stability.linear import linear_gear
+from ..stability.modes import track_modes
+from ..stability.worst import worst_points
+from . import summary
+from .arguments import speed_grid
 from .shared import ConfigArgument, DesignOption, OutputOption, out, study_and_design
 
 __all__ = ["analyse"]

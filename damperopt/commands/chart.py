@@ -8,15 +8,15 @@ from typing import Annotated
 
 import typer
 
-from .. import summary
-from ..arguments import axis_range, quantity, values_of
-from ..chart import chart as trace_chart
+from ..charts.chart import chart as trace_chart
+from ..charts.maps import filled_map
+from ..charts.plane import Plane
 from ..errors import ConfigError
-from ..maps import filled_map
-from ..output import run_folder, write_run
-from ..plane import Plane
-from ..records import Force, Rate, Speed
-from ..run_files import write_chart_files
+from ..output.folder import run_folder, write_run
+from ..output.gallery import write_chart_files
+from ..quantities.record import Force, Rate, Speed
+from . import summary
+from .arguments import axis_range, quantity, values_of
 from .shared import ConfigArgument, OutputOption, all_or_nothing, out, study_and_design
 
 __all__ = ["chart"]

@@ -8,16 +8,17 @@ from typing import Annotated
 
 import typer
 
-from .. import config, summary
-from ..arguments import choices
 from ..design import combinations, optimise_each, rank
 from ..errors import Interrupted
-from ..materials import MATERIALS
-from ..output import run_folder, write_ranking, write_run
-from ..report import write_report
+from ..output import write_report
+from ..output.folder import run_folder, write_ranking, write_run
+from ..output.gallery import write_design
 from ..results import DesignResult
-from ..run_files import write_design
-from ..variables import TOPOLOGIES
+from ..strength.materials import MATERIALS
+from ..study import config
+from ..study.variables import TOPOLOGIES
+from . import summary
+from .arguments import choices
 from .shared import ConfigArgument, OutputOption, err, out, progress, workers_for
 
 __all__ = ["optimise"]

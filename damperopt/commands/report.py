@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..errors import OutputError
-from ..report import write_report
+from ..output import write_report
 from .shared import all_or_nothing, out
 
 __all__ = ["report"]

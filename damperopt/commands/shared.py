@@ -22,12 +22,12 @@ from rich.progress import (
 )
 from rich.text import Text
 
-from .. import config
 from ..errors import ConfigError, Interrupted
-from ..pool import cores
 from ..results import DesignResult, load_result
-from ..specs import Study
-from ..variables import DESIGN_VARIABLES
+from ..study import config
+from ..study.study import Study
+from ..study.variables import DESIGN_VARIABLES
+from ..workers import cores
 
 __all__ = [
     "ConfigArgument",

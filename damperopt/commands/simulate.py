@@ -7,15 +7,15 @@ from typing import Annotated
 
 import typer
 
-from .. import summary
-from ..arguments import disturbance_of, quantity
 from ..errors import ConfigError
-from ..events import ExactSimulator
-from ..integrators import ENGINES
-from ..output import run_folder, write_motion, write_run, write_trajectory
-from ..records import Force, Speed, Time
-from ..simulate import Simulator
-from ..trajectory import motion_of
+from ..motion.exact import ExactSimulator
+from ..motion.integrators import ENGINES
+from ..motion.simulate import Simulator
+from ..motion.trajectory import motion_of
+from ..output.folder import run_folder, write_motion, write_run, write_trajectory
+from ..quantities.record import Force, Speed, Time
+from . import summary
+from .arguments import disturbance_of, quantity
 from .shared import ConfigArgument, DesignOption, OutputOption, all_or_nothing, out, study_and_design
 
 __all__ = ["simulate"]
@@ -58,7 +58,7 @@ def simulate(
     found = motion_of(motion, required.cycles if required else 3)
 
     def write(place: Path) -> None:
-        from .. import plots  # matplotlib takes longer to import than a motion takes to find
+        from ..figures import style as plots  # matplotlib takes longer to import than a motion takes to find
 
         write_trajectory(place / "trajectory.csv", motion)
         write_motion(place / "motion.json", motion, found, disturbance, values or study.start)

@@ -10,8 +10,8 @@ from typing import Annotated
 
 import typer
 
-from .. import config
 from ..errors import ConfigError, OutputError
+from ..study import config
 from .shared import out
 
 __all__ = ["init", "schema", "validate"]

@@ -13,12 +13,13 @@ from typing import Annotated
 
 import typer
 
-from .. import plots
 from ..errors import Interrupted, OutputError
-from ..pool import cluster, cluster_size, cores, process_pool
+from ..figures import style as plots
+from ..figures.sweep import sweep_figure
 from ..provenance import provenance_of
-from ..sweep import PointRecord, Sweep, dataset, load_sweep, run_sweep, stored_records, sweep_figure
+from ..sweep import PointRecord, Sweep, dataset, load_sweep, run_sweep, stored_records
 from ..sweep.run import counts
+from ..workers import cluster, cluster_size, cores, process_pool
 from .shared import bar, err, out
 
 __all__ = ["sweep"]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from .. import summary
-from ..output import run_folder, write_run
-from ..pool import cores, executor
-from ..thesis import Row, panels, thesis_gear, write_thesis
+from ..literature.arreaza2015 import Row, panels, thesis_gear, write_thesis
+from ..output.folder import run_folder, write_run
+from ..workers import cores, executor
+from . import summary
 from .shared import OutputOption, all_or_nothing, bar, out
 
 __all__ = ["thesis"]

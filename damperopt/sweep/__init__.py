@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from .dataset import dataset
-from .drawing import sweep_figure
 from .points import run_point
 from .run import PointRecord, run_sweep, stored_records
 from .spec import Point, Sweep, load_sweep, sweep_of
@@ -17,6 +16,5 @@ __all__ = [
     "run_point",
     "run_sweep",
     "stored_records",
-    "sweep_figure",
     "sweep_of",
 ]

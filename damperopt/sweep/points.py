@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ..critical import critical_speeds
 from ..design import optimise
 from ..errors import ConfigError
-from ..modes import track_modes
-from ..specs import Study
-from ..stability import linear_gear
-from ..worst import worst_points
+from ..stability.critical import critical_speeds
+from ..stability.linear import linear_gear
+from ..stability.modes import track_modes
+from ..stability.worst import worst_points
+from ..study.study import Study
 
 __all__ = ["run_point"]
 

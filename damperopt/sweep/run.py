@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import OutputError
-from ..pool import cores, process_pool
+from ..workers import cores, process_pool
 from .points import run_point
 from .spec import Point, Sweep
 

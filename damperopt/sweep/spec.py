@@ -14,10 +14,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 from scipy import stats
 
-from ..config import load, parsed, text_of
 from ..errors import ConfigError
-from ..specs import Study, unit_of
-from ..units import Quantity
+from ..quantities.units import Quantity
+from ..study.config import load, parsed, text_of
+from ..study.study import Study, unit_of
 
 __all__ = ["Point", "Sweep", "load_sweep", "sweep_of"]
 

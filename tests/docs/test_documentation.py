@@ -14,7 +14,7 @@ import damperopt
 
 ROOT = Path(__file__).parents[2]
 PICTURES = {"01": 3, "02": 1, "03": 2, "04": 2, "05": 2}
-NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.md"))
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.md"))
 
 
 @pytest.mark.slow
@@ -66,7 +66,7 @@ def test_documentation_builds_without_a_warning(tmp_path):
 
 
 def test_links_between_pages_and_to_headings_exist():
-    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *NOTEBOOKS]
     for page in pages:
         for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text()):
             if "://" not in target:

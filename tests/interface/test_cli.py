@@ -14,9 +14,9 @@ import pytest
 import yaml
 
 import damperopt
-from damperopt.sizing import MassModel, Requirements
-from damperopt.specs import Gear
-from damperopt.variables import Solver
+from damperopt.study.requirements import MassModel, Requirements
+from damperopt.study.study import Gear
+from damperopt.study.variables import Solver
 
 pytestmark = pytest.mark.slow
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt.linkage_plot import parts_of
-from damperopt.report import report_of, write_report
-from damperopt.run_files import write_design
+from damperopt.figures.linkage import parts_of
+from damperopt.output import report_of, write_report
+from damperopt.output.gallery import write_design
 
 COMMAND = [sys.executable, "-c", "from damperopt.cli import main; main()", "report"]
 
@@ -155,7 +155,7 @@ def test_progress_is_shown_when_asked_for(main_gear, capsys):
 
 
 def test_a_range_of_loads_is_a_range_and_nothing_unproved_is_explained(solved):
-    from damperopt.report import words
+    from damperopt.output import words
 
     study, result = solved
     assert "at 100 to 150 kN" in words.asked(study.replace(envelope__vertical_load={"min": 100e3, "max": 150e3}))[1]

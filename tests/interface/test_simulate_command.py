@@ -36,7 +36,7 @@ def read(folder):
 @pytest.fixture
 def call(monkeypatch, capsys, tmp_path):
     """The command in this process and without compilation, in an empty folder: exit code and what it prints."""
-    monkeypatch.setattr("damperopt.integrators.has_compiler", lambda: False)
+    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments):

@@ -16,9 +16,9 @@ import pytest
 
 import damperopt
 from damperopt.errors import ConfigError
-from damperopt.pool import cluster, process_pool
 from damperopt.sweep import dataset, load_sweep, run_sweep, stored_records, sweep_of
 from damperopt.sweep.points import run_point
+from damperopt.workers import cluster, process_pool
 
 COMMAND = [sys.executable, "-W", "error::RuntimeWarning", "-c", "from damperopt.cli import main; main()", "sweep"]
 

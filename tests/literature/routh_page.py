@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import sympy as sp
 
-from damperopt.thesis.printed import COEFFICIENTS
+from damperopt.literature.arreaza2015.printed import COEFFICIENTS
 
 PAGE = Path(__file__).parents[2] / "docs" / "routh.md"
 

@@ -20,9 +20,9 @@ from scipy.optimize import brentq
 from tolerances import CRITICAL_DAMPING, ROUNDING, printed
 
 import damperopt
-from damperopt.dampers import linkage
-from damperopt.specs import Damper
-from damperopt.stability import LinearModel
+from damperopt.linkages.planar import linkage
+from damperopt.stability.linear import LinearModel
+from damperopt.study.study import Damper
 
 LOAD = 150e3
 THIRD_ORDER = [(5, "433"), (10, "824"), (20, "1006"), (40, "807"), (80, "483"), (120, "335"), (160, "255")]

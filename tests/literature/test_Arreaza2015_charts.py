@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from damperopt.thesis import (
+from damperopt.literature.arreaza2015 import (
     CHART_CLAIMS,
     FIGURES,
     FORMS,
@@ -24,8 +24,8 @@ from damperopt.thesis import (
     trace_figure,
     write_thesis,
 )
-from damperopt.thesis.charts import misprints
-from damperopt.thesis.claims import _needed
+from damperopt.literature.arreaza2015.charts import misprints
+from damperopt.literature.arreaza2015.claims import _needed
 
 pytestmark = pytest.mark.slow
 
@@ -152,7 +152,7 @@ def test_misprints_of_the_new_design_leave_its_chart_nearly_as_it_is(main_gear):
 
 
 def test_the_page_shows_every_figure(main_gear, tmp_path, monkeypatch):
-    from damperopt.thesis import page
+    from damperopt.literature.arreaza2015 import page
 
     monkeypatch.setattr(page, "FIGURES", FIGURES[:2])
     monkeypatch.setattr(page, "RESPONSES", RESPONSES[:1])

@@ -24,9 +24,10 @@ from tolerances import (
     printed,
 )
 
-from damperopt.simulate import Simulator
-from damperopt.stability import LinearModel
-from damperopt.trajectory import extrema, motion_of
+from damperopt.motion.measure import extrema
+from damperopt.motion.simulate import Simulator
+from damperopt.motion.trajectory import motion_of
+from damperopt.stability.linear import LinearModel
 
 LOAD = 150e3
 STEEL = {"youngs_modulus": E_STEEL, "density": 7850.0, "yield_strength": 1e9}

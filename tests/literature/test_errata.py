@@ -17,12 +17,12 @@ from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 from tolerances import CHARACTERISTIC_POLYNOMIAL, QUADRATURE, ROUNDING
 
-from damperopt.critical import speed_polynomials
-from damperopt.hurwitz import characteristic_polynomial, hurwitz_determinants
-from damperopt.specs import Damper
-from damperopt.stability import LinearModel
-from damperopt.thesis.charts import MISPRINTS_OF
-from damperopt.thesis.printed import COEFFICIENTS, MISPRINTS
+from damperopt.literature.arreaza2015.charts import MISPRINTS_OF
+from damperopt.literature.arreaza2015.printed import COEFFICIENTS, MISPRINTS
+from damperopt.stability.critical import speed_polynomials
+from damperopt.stability.hurwitz import characteristic_polynomial, hurwitz_determinants
+from damperopt.stability.linear import LinearModel
+from damperopt.study.study import Damper
 
 printed_boeing, printed_utas, printed_new_design = (COEFFICIENTS[layout] for layout in ("boeing", "utas", "arreaza"))
 

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 from tolerances import DESCRIBED_AMPLITUDE, DESCRIBED_FREQUENCY, GAP_PROPORTION, QUADRATURE, SAME_CYCLE, printed
 
 import damperopt
-from damperopt.events import ExactSimulator
-from damperopt.simulate import Simulator
-from damperopt.trajectory import motion_of
+from damperopt.motion.exact import ExactSimulator
+from damperopt.motion.simulate import Simulator
+from damperopt.motion.trajectory import motion_of
 
 # ------------------------------------------------------------------------------------------------------- Thota et al. 2009
 

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 from routh_page import LAYOUTS, PAGE, C, K, P, derived, page
 
-from damperopt.thesis.printed import COEFFICIENTS, MISPRINTS
+from damperopt.literature.arreaza2015.printed import COEFFICIENTS, MISPRINTS
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ def test_import_contracts_hold():
 def test_every_module_says_what_it_is_for_and_lists_its_names(module):
     loaded = importlib.import_module(f"damperopt.{module}")
     assert loaded.__doc__
-    assert loaded.__all__
+    assert loaded.__all__ or hasattr(loaded, "__path__")  # a room lists what is more than its modules
     assert all(hasattr(loaded, name) for name in loaded.__all__)
 
 
@@ -46,7 +46,7 @@ def test_docstrings_of_public_functions_name_every_parameter():
     """Functions of the package's own list, and those with three parameters or more, have a Parameters section."""
     problems = []
     for module, name, thing in public_objects():
-        if not inspect.isfunction(thing) or module.split(".")[0] in ("cli", "commands", "summary", "sections", "tyres"):
+        if not inspect.isfunction(thing) or module.split(".")[0] in ("cli", "commands"):
             continue
         doc = inspect.getdoc(thing)
         parameters = [p for p in inspect.signature(thing).parameters if p not in ("self", "progress")]

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-import damperopt
+from damperopt.optimum.problem import DesignProblem
 
 pytestmark = pytest.mark.slow
 
@@ -14,7 +14,7 @@ SPEEDS = np.unique(np.concatenate([np.geomspace(5, 100, 30), np.linspace(20, 60,
 
 def lightest_on_grid(study, axes, lighter_than):
     """Least mass among the grid's feasible designs below a mass; stability by eigenvalues, of candidates only."""
-    problem = damperopt.DesignProblem(study)
+    problem = DesignProblem(study)
     designs = np.array(list(itertools.product(*axes)))
     found = problem.over_designs(designs)
     ok = np.all(found["rows"] <= 1e-9, axis=1) & (found["mass"] < lighter_than)
@@ -37,7 +37,7 @@ def test_no_grid_point_of_the_whole_box_is_lighter(topology, main_gear, optimum)
         "gamma": (0.25, 0.9),
         "b": (0.05, 0.5),
     }
-    names = damperopt.DesignProblem(study).design_names
+    names = DesignProblem(study).design_names
     axes = [np.geomspace(*spans[name], count) for name, count in zip(names, counts, strict=True)]
     best = optimum(topology).mass.total
     assert lightest_on_grid(study, axes, lighter_than=best) == np.inf

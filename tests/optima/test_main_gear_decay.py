@@ -7,8 +7,9 @@ import pytest
 from scipy.optimize import minimize
 
 import damperopt
-from damperopt.decay import DecayAnalysis
 from damperopt.design import optimise
+from damperopt.motion.decay import DecayAnalysis
+from damperopt.optimum.problem import DesignProblem
 
 pytestmark = pytest.mark.slow
 
@@ -68,7 +69,7 @@ def test_frozen_optimum_with_decay(topology, decaying):
 def test_nothing_lighter_without_derivatives(topology, decaying, main_gear_with_decay):
     """COBYLA on the same functions from 8 % aside: nothing lighter, and it comes within half a per cent."""
     study = main_gear_with_decay.replace(damper__topology=topology)
-    problem, analysis, best = damperopt.DesignProblem(study), DecayAnalysis(study), decaying(topology)
+    problem, analysis, best = DesignProblem(study), DecayAnalysis(study), decaying(topology)
     names = list(best.design)
     centre = np.log([best.design[name] for name in names])
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
 
-import damperopt
+from damperopt.optimum.problem import DesignProblem
 
 pytestmark = pytest.mark.slow
 
@@ -68,7 +68,7 @@ def cheapest_layout(problem, k_psi, c_psi, start):
 
 @pytest.mark.parametrize("topology", ["boeing", "arreaza"])
 def test_optimum_found_along_the_border_of_the_stable_region(topology, main_gear, optimum):
-    problem = damperopt.DesignProblem(main_gear.replace(damper__topology=topology))
+    problem = DesignProblem(main_gear.replace(damper__topology=topology))
 
     def best_at(k_psi, start):
         found = [cheapest_layout(problem, k_psi, c_psi, start) for c_psi in least_dampings(k_psi)]

@@ -24,7 +24,7 @@ from random_gears import (
 from scipy.optimize import brentq
 
 from damperopt import certify, linear_gear, worst_points
-from damperopt.certify import (
+from damperopt.proof.certify import (
     _bernstein,
     _bernstein_1d,
     _halves,

@@ -10,11 +10,11 @@ from random_gears import random_gear, rotational
 from tolerances import ON_THE_CURVE
 
 import damperopt
-from damperopt.boundary import trace
+from damperopt.charts.explicit import boundary as joint_lines
+from damperopt.charts.explicit import joint_of
+from damperopt.charts.plane import Axis, Plane
+from damperopt.charts.tracing import trace
 from damperopt.errors import ConfigError
-from damperopt.joint import boundary as joint_lines
-from damperopt.joint import joint_of
-from damperopt.plane import Axis, Plane
 
 PLANES = [
     (("damper.torsional_damping", 0.0, 5e3), ("damper.torsional_stiffness", 0.0, 1e6)),
@@ -132,7 +132,7 @@ def test_explicit_curves_that_are_wrong_are_traced_instead(main_gear, monkeypatc
 
     x, y = ("c_lambda", 0.0, 3e4), ("I_arm", 0.0, 1e-5)
     right = damperopt.chart(main_gear, x, y)
-    monkeypatch.setattr(sys.modules["damperopt.chart"], "joint_lines", lambda *given: [])
+    monkeypatch.setattr(sys.modules["damperopt.charts.chart"], "joint_lines", lambda *given: [])
     found = damperopt.chart(main_gear, x, y)
     assert not found.families[0].explicit
     rng = np.random.default_rng(3)
@@ -212,7 +212,7 @@ def test_bad_questions_are_refused(main_gear, x, message):
 
 
 def test_files_of_a_chart(main_gear, tmp_path):
-    from damperopt.run_files import write_chart_files
+    from damperopt.output.gallery import write_chart_files
 
     found = damperopt.chart(main_gear, ("c_lambda", 0.0, 2e5), ("I_arm", 0.0, 1e-5), vary=("speed", [40.0, 80.0]))
     write_chart_files(tmp_path, found)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from random_gears import random_gear, rotational
 
-from damperopt.maps import StabilityMap
-from damperopt.plane import Axis, Plane
+from damperopt.charts.maps import StabilityMap
+from damperopt.charts.plane import Axis, Plane
 
 PLANES = [
     (("damper.torsional_damping", 0.0, 5e3), ("damper.torsional_stiffness", 0.0, 1e6)),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
-from damperopt.boundary import trace
+from damperopt.charts.tracing import trace
 
 
 def circle(x, y, r):

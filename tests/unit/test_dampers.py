@@ -7,8 +7,8 @@ from basic_twin import LAYOUT, planar_coefficients, planar_torque, published_coe
 from scipy.integrate import quad
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, QUADRATURE, ROUNDING
 
-from damperopt.dampers import linkage
-from damperopt.specs import Damper
+from damperopt.linkages.planar import linkage
+from damperopt.study.study import Damper
 
 E = 207e9
 DESIGN = LAYOUT | {"c_lambda": 2.0e4, "k_lambda": 3.8e6, "I_arm": 3.4e-6}

@@ -8,10 +8,10 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 from tolerances import DECAY_GRADIENT, DECAY_RATIO, SAME_WORST
 
-from damperopt.decay import DIVERGED, DecayAnalysis
-from damperopt.events import ExactSimulator
-from damperopt.integrators import best_engine, has_compiler
-from damperopt.trajectory import decay
+from damperopt.motion.decay import DIVERGED, DecayAnalysis
+from damperopt.motion.exact import ExactSimulator
+from damperopt.motion.integrators import best_engine, has_compiler
+from damperopt.motion.trajectory import decay
 
 LOAD, CYCLES = 150e3, 3
 DESIGNS = {

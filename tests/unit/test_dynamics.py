@@ -19,8 +19,8 @@ from basic_twin import (
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
-from damperopt.elements import Smooth
-from damperopt.stability import LinearModel, linearise
+from damperopt.expressions.corners import Smooth
+from damperopt.stability.linear import LinearModel, linearise
 from damperopt.symbols import data_values, symbolic
 
 TYRES = {

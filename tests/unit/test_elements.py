@@ -15,11 +15,11 @@ from tolerances import (
     STATIC_STIFFNESS,
 )
 
-from damperopt.damper_torque import damper_torque
-from damperopt.elements import Linear, Smooth, Switched
-from damperopt.joints import EndStop, Freeplay, Orifice
-from damperopt.linkage import Linkage, Position
-from damperopt.stability import LinearModel
+from damperopt.expressions.corners import Linear, Smooth, Switched
+from damperopt.linkages.base import Linkage, Position
+from damperopt.linkages.joints import EndStop, Freeplay, Orifice
+from damperopt.linkages.torque import damper_torque
+from damperopt.stability.linear import LinearModel
 
 WIDTH, GAP = 1e-3, 0.25
 POINTS = np.array([-1.7, -0.6, -0.1, 0.05, 0.4, 2.3])

@@ -7,10 +7,10 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from tolerances import CONVERGED, ENERGY, EVENT_MOTION, FIRST_ORDER, INTEGRATED
 
-from damperopt.events import ExactSimulator, simulate_exactly
-from damperopt.simulate import Simulator
-from damperopt.trajectory import motion_of
-from damperopt.variables import DESIGN_VARIABLES
+from damperopt.motion.exact import ExactSimulator, simulate_exactly
+from damperopt.motion.simulate import Simulator
+from damperopt.motion.trajectory import motion_of
+from damperopt.study.variables import DESIGN_VARIABLES
 
 SPEED, LOAD, INERTIA = 40.0, 150e3, 100.0
 DESIGN = LAYOUT | {"c_lambda": 3.0e3, "k_lambda": 3.8e6, "I_arm": 3.4e-6}
@@ -41,13 +41,13 @@ def study(main_gear):
 @pytest.fixture
 def interpreted(monkeypatch):
     """No compilation: it takes longer than these motions."""
-    monkeypatch.setattr("damperopt.integrators.has_compiler", lambda: False)
+    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
 
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch):
     """No motion here has more than some hundred corners: one that goes on chattering at a corner fails soon."""
-    monkeypatch.setattr("damperopt.events.MAX_EVENTS", 300)
+    monkeypatch.setattr("damperopt.motion.exact.MAX_EVENTS", 300)
 
 
 def design_of(topology, **changes):

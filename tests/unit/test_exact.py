@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from basic_twin import effective_caster, parameters, state_matrix
 
-from damperopt import CertificateError, exact
-from damperopt.exact import evaluate, rational
-from damperopt.stability import LinearModel
+from damperopt import CertificateError
+from damperopt.proof import rationals as exact
+from damperopt.proof.rationals import evaluate, rational
+from damperopt.stability.linear import LinearModel
 from damperopt.symbols import data_values
 
 IRRATIONAL = Fraction(1, 2**80)

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from damperopt.hurwitz import characteristic_polynomial, determinant, hurwitz_determinants, lienard_chipart, shifted
+from damperopt.stability.hurwitz import characteristic_polynomial, determinant, hurwitz_determinants, lienard_chipart, shifted
 
 ROOTS = 1e-8
 """Absolute, for roots of order one: `numpy.roots` of degree 7 loses up to half its digits where roots lie close."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-import damperopt
+from damperopt.optimum.problem import DesignProblem
 
 PI = math.pi
 ROUNDING = 1e-12
@@ -50,7 +50,7 @@ def cantilever_mass(force, length):
 
 
 def problem_of(main_gear, topology):
-    return damperopt.DesignProblem(main_gear.replace(damper__topology=topology))
+    return DesignProblem(main_gear.replace(damper__topology=topology))
 
 
 def test_boeing_part_by_part(main_gear):
@@ -114,7 +114,7 @@ def test_utas_stress_is_that_of_the_deflected_cantilever(main_gear):
 
 def test_laminate_is_sized_by_strain_and_given_torque_replaces_the_derived_one(main_gear):
     study = main_gear.replace(material="CFRP UD", requirements__limit_torque=10e3)
-    problem = damperopt.DesignProblem(study)
+    problem = DesignProblem(study)
     design = study.start
     assert problem.limit_event(design)["linkage_torque"] == 10e3
     assert problem.values(design)["arm_stress"][1] == pytest.approx(140e9 * 0.0045)

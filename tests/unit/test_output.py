@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt import output, plots
-from damperopt.region import feasible_region
+from damperopt.figures import style as plots
+from damperopt.optimum.region import feasible_region
+from damperopt.output import folder as output
 
 
 @pytest.fixture(scope="module")

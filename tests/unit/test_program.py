@@ -5,16 +5,17 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt.program import ElasticFactorProgram, ElasticHurwitzProgram, FactorProgram, HurwitzProgram
-from damperopt.scan import sobol_designs
-from damperopt.solve import NlpSolver
+from damperopt.optimum.problem import DesignProblem
+from damperopt.optimum.program import ElasticFactorProgram, ElasticHurwitzProgram, FactorProgram, HurwitzProgram
+from damperopt.optimum.scan import sobol_designs
+from damperopt.optimum.solve import NlpSolver
 
 POINTS = [(5.0, 150e3), (22.0, 150e3), (60.0, 100e3)]
 
 
 @pytest.fixture(scope="module", params=["boeing", "utas", "arreaza"])
 def problem(request, main_gear):
-    return damperopt.DesignProblem(main_gear.replace(damper__topology=request.param))
+    return DesignProblem(main_gear.replace(damper__topology=request.param))
 
 
 def random_designs(problem, count):

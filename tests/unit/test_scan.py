@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt.multistart import starting_designs
-from damperopt.scan import promising_designs, sobol_designs, steady_designs, stiffness_scan
-from damperopt.screening import least_conditions, worst_abscissae
+from damperopt.optimum.multistart import starting_designs
+from damperopt.optimum.problem import DesignProblem
+from damperopt.optimum.scan import promising_designs, sobol_designs, steady_designs, stiffness_scan
+from damperopt.stability.screening import least_conditions, worst_abscissae
 
 
 @pytest.fixture(scope="module", params=["boeing", "utas", "arreaza"])
 def problem(request, main_gear):
-    return damperopt.DesignProblem(main_gear.replace(damper__topology=request.param))
+    return DesignProblem(main_gear.replace(damper__topology=request.param))
 
 
 def test_screening_agrees_with_eigenvalues(main_gear):
@@ -77,7 +78,7 @@ def test_sobol_designs_do_not_depend_on_their_number(problem):
 
 
 def test_fixed_variables_stay_fixed(main_gear):
-    problem = damperopt.DesignProblem(main_gear.replace(design__L=0.6, design__b=0.2))
+    problem = DesignProblem(main_gear.replace(design__L=0.6, design__b=0.2))
     designs = sobol_designs(problem, 8)
     assert np.all(designs[:, problem.design_names.index("L")] == 0.6)
     assert np.all(designs[:, problem.design_names.index("b")] == 0.2)

@@ -9,14 +9,16 @@ from scipy.integrate import solve_ivp
 from tolerances import INTERPOLATED_DECAY, LINEAR_RESPONSE, ROUNDING, SAME_MOTION, SENSITIVITY
 
 from damperopt.dynamics import build
-from damperopt.elements import Smooth
 from damperopt.errors import ConfigError
-from damperopt.events import simulate_exactly
-from damperopt.integrators import Integrator
-from damperopt.simulate import Simulator, simulate, valid_part
+from damperopt.expressions.corners import Smooth
+from damperopt.motion.exact import simulate_exactly
+from damperopt.motion.integrators import Integrator
+from damperopt.motion.measure import crossings, extrema
+from damperopt.motion.question import valid_part
+from damperopt.motion.simulate import Simulator, simulate
+from damperopt.motion.trajectory import Trajectory, motion_of
+from damperopt.study.variables import DESIGN_VARIABLES
 from damperopt.symbols import data_values, symbolic
-from damperopt.trajectory import Trajectory, crossings, extrema, motion_of
-from damperopt.variables import DESIGN_VARIABLES
 
 DESIGN = LAYOUT | {"c_lambda": 3.0e3, "k_lambda": 3.8e6, "I_arm": 3.4e-6}
 SPEED, LOAD, RAKE = 40.0, 150e3, 0.1571
@@ -33,7 +35,7 @@ DAMPERS = {
 @pytest.fixture
 def interpreted(monkeypatch):
     """No compilation: it takes longer than these motions."""
-    monkeypatch.setattr("damperopt.integrators.has_compiler", lambda: False)
+    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
 
 
 @pytest.fixture
@@ -91,7 +93,7 @@ def test_engines_move_as_the_twin_does(study, damper, engine, interpreted):
 @pytest.mark.slow
 def test_compiled_and_interpreted_engine_take_the_same_steps(study, monkeypatch):
     compiled = Simulator(study(), design_of("boeing"), "erk", 1e-9)(SPEED, LOAD, RELEASE, DURATION)
-    monkeypatch.setattr("damperopt.integrators.has_compiler", lambda: False)
+    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
     interpreted = Simulator(study(), design_of("boeing"), "erk", 1e-9)(SPEED, LOAD, RELEASE, DURATION)
     assert differs(compiled.states.values(), list(interpreted.states.values())) < 1e-10
 

@@ -20,15 +20,16 @@ from tolerances import (
     printed,
 )
 
-from damperopt.dae import eliminate
-from damperopt.dampers import linkage
 from damperopt.dynamics import build
-from damperopt.elements import Smooth
-from damperopt.events import ExactSimulator
-from damperopt.simulate import UNCLOSED, Outputs, Simulator
-from damperopt.spatial import FORESHORTENING
-from damperopt.specs import Damper
-from damperopt.stability import LinearModel
+from damperopt.expressions.corners import Smooth
+from damperopt.expressions.dae import eliminate
+from damperopt.linkages.planar import linkage
+from damperopt.linkages.spatial import FORESHORTENING
+from damperopt.motion.exact import ExactSimulator
+from damperopt.motion.question import UNCLOSED
+from damperopt.motion.simulate import Outputs, Simulator
+from damperopt.stability.linear import LinearModel
+from damperopt.study.study import Damper
 from damperopt.symbols import data_values, symbolic
 
 LAYOUTS = ["boeing", "utas", "arreaza"]
@@ -312,7 +313,7 @@ TIGHT = {"erk": 1e-11, "cvodes": 1e-11, "idas": 1e-10, "exact": 1e-11}
 @pytest.fixture
 def interpreted(monkeypatch):
     """No compilation: it takes longer than these motions."""
-    monkeypatch.setattr("damperopt.integrators.has_compiler", lambda: False)
+    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
 
 
 def simulator(study, design, engine, tolerance):

@@ -9,10 +9,10 @@ from basic_twin import side_force as twin_force
 from scipy.integrate import trapezoid
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, GRID_SEARCH, ROUNDING
 
-from damperopt import tyres
-from damperopt.elements import Smooth
-from damperopt.specs import LinearTyre, StraightTangentTyre, StringTyre
-from damperopt.tyres import (
+from damperopt.expressions.corners import Smooth
+from damperopt.study.study import LinearTyre, StraightTangentTyre, StringTyre
+from damperopt.tyres import string as tyres
+from damperopt.tyres.string import (
     peak_aligning_moment,
     peak_side_force,
     side_force,

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
-from damperopt.units import Quantity
+from damperopt.quantities.units import Quantity
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,190 @@
+"""A plane of two quantities of a study: state matrices, and the spectral abscissa beyond the margin, at any of its points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import casadi as ca
+import numpy as np
+
+from ..errors import ConfigError
+from ..stability.linear import LinearModel, spectral_abscissa
+from ..study.study import Study, unit_of
+from ..symbols import data_names, data_values
+
+__all__ = ["Axis", "Plane", "quantity_name", "unit_of_quantity"]
+
+OPERATING = {"speed": "m/s", "vertical_load": "N"}
+DESIGN_UNITS = {"c_lambda": "N s/m", "k_lambda": "N/m", "I_arm": "m^4", "L": "m", "gamma": "rad", "b": "m"}
+BATCH = 20_000
+"""Matrices that are in memory at once."""
+
+
+def quantity_name(study: Study, text: str) -> str:
+    """Full name of what a chart may vary.
+
+    Parameters
+    ----------
+    study : Study
+    text : str
+        ``speed``, ``vertical_load`` (or ``load``), a design variable, or a key path of a number, whose last part is enough
+        where it is unique: ``caster_length``.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ConfigError
+        If there is no such quantity, or more than one.
+    """
+    text = {"load": "vertical_load", "V": "speed", "F_z": "vertical_load"}.get(text, text)
+    model_names = (*OPERATING, *study.start)
+    if text in model_names:
+        return text
+    paths = [name for name in data_names(study) if name.split(".")[0] in ("gear", "tyre", "damper", "material")]
+    found = [name for name in paths if name == text or name.endswith("." + text)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise ConfigError(f"'{text}' is several quantities; allowed: one of {', '.join(found)}")
+    raise ConfigError(f"'{text}' is unknown; allowed: {', '.join((*model_names, *paths))}")
+
+
+def unit_of_quantity(study: Study, name: str) -> str:
+    """SI unit of a quantity by its full name."""
+    return OPERATING.get(name) or DESIGN_UNITS.get(name) or unit_of(study, name)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A quantity and its range [SI]."""
+
+    name: str
+    low: float
+    high: float
+    unit: str
+
+    @classmethod
+    def of(cls, study: Study, name: str, low: float, high: float) -> Axis:
+        """Axis of a study.
+
+        Parameters
+        ----------
+        study : Study
+        name : str
+            As `quantity_name` takes it.
+        low, high : float
+            [SI]
+
+        Returns
+        -------
+        Axis
+
+        Raises
+        ------
+        ConfigError
+            If the range is empty or not finite, or lies where the model does not exist.
+        """
+        full = quantity_name(study, name)
+        unit = unit_of_quantity(study, full)
+        if not -np.inf < low < high < np.inf:
+            raise ConfigError(f"{name}: found the range {low:g} to {high:g}; allowed: a finite range, low < high, in {unit}")
+        lowest = 0.0 if full in (*OPERATING, *DESIGN_UNITS) else -np.inf
+        if low < lowest or (full == "speed" and low == 0):
+            raise ConfigError(f"{name}: found {low:g} {unit}; allowed: {'> 0' if full == 'speed' else '>= 0'}")
+        if lowest == -np.inf:
+            for end in (low, high):
+                study.replace(**{full.replace(".", "__"): float(end)})  # what a study may not have, a chart may not show
+        return cls(full, low, high, unit)
+
+    def at(self, fraction: np.ndarray) -> np.ndarray:
+        """Value at a fraction of the range."""
+        return self.low + (self.high - self.low) * fraction
+
+
+@dataclass
+class Plane:
+    """Spectral abscissa over two quantities, each as a fraction 0 to 1 of its range.
+
+    Parameters
+    ----------
+    study : Study
+    x, y : Axis
+    design : mapping
+        Design variables by name [SI].
+    speed, load : float
+        Where they are not varied [m/s], [N].
+    margin : float
+        [1/s]
+    fixed : mapping
+        Other quantities that are not those of the study, by full name.
+
+    Attributes
+    ----------
+    evaluations : int
+        State matrices whose eigenvalues were computed.
+    """
+
+    study: Study
+    x: Axis
+    y: Axis
+    design: Mapping[str, float]
+    speed: float
+    load: float
+    margin: float = 0.0
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    evaluations: int = 0
+
+    def __post_init__(self) -> None:
+        self._model = LinearModel(self.study)
+        self._data_names = data_names(self.study)
+        numbers = dict(zip(self._data_names, data_values(self.study), strict=True))
+        self._values = {**numbers, **self.design, "speed": self.speed, "vertical_load": self.load, **self.fixed}
+        if self.x.name == self.y.name:
+            raise ConfigError(f"{self.x.name}: found on both axes; allowed: two different quantities")
+
+    def matrices(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """State matrices (m, n, n) at fractions u, v (m,) of the ranges."""
+        names, n, m = self._model.design_names, len(self._model.state_names), u.size
+        varied = {self.x.name: self.x.at(u), self.y.name: self.y.at(v)}
+
+        def rows(keys: tuple[str, ...]) -> ca.DM:
+            return ca.DM(np.array([np.broadcast_to(varied.get(key, self._values[key]), m) for key in keys]).reshape(-1, m))
+
+        inputs = [rows(keys) for keys in (names, ("speed",), ("vertical_load",), self._data_names)]
+        return self._model.state_matrix(*inputs).full().reshape(n, m, n).transpose(1, 0, 2)
+
+    def symbolic_matrix(self, x: ca.SX, y: ca.SX) -> ca.SX:
+        """State matrix as an expression of the two quantities [SI]; all else is folded into constants."""
+        varied = {self.x.name: x, self.y.name: y}
+
+        def column(keys: tuple[str, ...]) -> ca.SX:
+            return ca.vertcat(*(varied[key] if key in varied else ca.SX(self._values[key]) for key in keys))
+
+        inputs = [column(keys) for keys in (self._model.design_names, ("speed",), ("vertical_load",), self._data_names)]
+        return self._model.state_matrix(*inputs)
+
+    def excess(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Spectral abscissa plus margin [1/s]: negative where the margin is kept."""
+        u, v = np.broadcast_arrays(u, v)
+        self.evaluations += u.size
+        parts = [self.matrices(u.ravel()[i : i + BATCH], v.ravel()[i : i + BATCH]) for i in range(0, u.size, BATCH)]
+        values = [self._abscissa(A) for A in parts]
+        return (np.concatenate(values) if values else np.zeros(0)).reshape(u.shape) + self.margin
+
+    def rightmost(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Rightmost eigenvalue, that with a positive imaginary part of a pair [1/s]."""
+        roots = np.linalg.eigvals(self.matrices(u, v))
+        order = np.argmax(roots.real + 1e-12 * np.abs(roots.imag), axis=1)
+        found = roots[np.arange(len(roots)), order]
+        return found.real + 1j * np.abs(found.imag)
+
+    def _abscissa(self, A: np.ndarray) -> np.ndarray:
+        if not np.isfinite(A).all():
+            raise ConfigError(
+                f"{self.x.name}, {self.y.name}: the model does not exist in all of the range; allowed: a smaller one"
+            )
+        return spectral_abscissa(A)

@@ -1,0 +1,221 @@
+"""What the command line shows: the answer first, then what it rests on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from ..charts.chart import StabilityChart
+from ..literature.arreaza2015 import Row
+from ..motion.trajectory import TRAJECTORY_UNITS, Motion, Trajectory
+from ..results import UNITS, Certificate, DesignResult, OperatingPoint
+from ..stability.critical import CriticalSpeed
+from ..study.study import Study
+
+__all__ = ["show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
+
+SHOWN_PEAKS = (
+    "yaw_angle",
+    "lateral_displacement",
+    "string_deflection",
+    "slip_angle",
+    "damper_stroke",
+    "damper_force",
+    "arm_stress",
+)
+
+WORDS = {"solved": "[bold green]solved[/]", "infeasible": "[bold red]infeasible[/]", "failed": "[bold red]failed[/]"}
+
+
+def show_design(console: Console, result: DesignResult) -> None:
+    """One result: mass, design, constraints, proof."""
+    console.print(
+        f"\n{WORDS[result.status]}: {escape(result.study)}, {result.topology} ({result.geometry}), {escape(result.material)}"
+    )
+    mass, worst, certificate, check = result.mass, result.stability, result.certificate, result.verification
+    if mass is None or worst is None or certificate is None or check is None:
+        console.print(escape(result.message), soft_wrap=True)
+        return
+    parts = ", ".join(f"{name} {m:.2f}" for name, m in mass.parts.items())
+    console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
+    table = _table("design variable", "value", "unit")
+    for name, value in (result.design | result.derived).items():
+        table.add_row(name, *_number(value, UNITS[name]))
+    console.print(table)
+    table = _table("constraint", "value", "limit", "unit", "kg per unit of the limit")
+    for c in result.constraints:
+        style = "bold" if c.active else "dim"
+        price = f"{c.shadow_price:.3g}" if c.active else ""
+        table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
+    console.print(table)
+    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
+    loads = f"{' to ' if certificate.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
+    console.print(
+        f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
+        f"{certificate.speed[1]:g} m/s, {loads} kN",
+        soft_wrap=True,
+    )
+    console.print(
+        f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "
+        f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
+        soft_wrap=True,
+    )
+    if result.decay is not None:
+        decay = result.decay
+        verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
+        console.print(
+            f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
+            f"{decay.load / 1e3:g} kN, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
+            f"; optimised with {decay.engine}",
+            soft_wrap=True,
+        )
+    if result.decided_by:
+        kinds = ", ".join(f"{kind} {weight:.2g} %" for kind, weight in result.decided_by.items())
+        console.print(f"What decides the mass, per 1 % of the limits: {kinds}", soft_wrap=True)
+    others = [f"{o.mass:.3f} kg ({o.starts})" for o in result.local_optima[1:]]
+    if others:
+        console.print(f"Other local optima (starts): {', '.join(others)}", soft_wrap=True)
+    top = [s for s in result.sensitivities if s.value != 0][:5]
+    console.print("Mass per +1 % of: " + ", ".join(f"{s.input} {s.elasticity:+.2f} %" for s in top), soft_wrap=True)
+    console.print("Not checked: " + "; ".join(result.not_checked), soft_wrap=True, style="dim")
+    if result.status == "failed":
+        console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
+
+
+def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
+    """Combinations at equal margins, the lightest first."""
+    table = _table("", "topology", "material", "mass, kg", "status", "decided by")
+    for position, result in enumerate(results, 1):
+        mass = f"{result.mass.total:.3f}" if result.mass else ""
+        active = ", ".join(c.name for c in result.constraints if c.active)
+        table.add_row(str(position), result.topology, result.material, mass, WORDS[result.status], active)
+    console.print(table)
+    for result in results:
+        if result.status != "solved":
+            console.print(f"{result.topology}, {escape(result.material)}: {escape(result.message)}", soft_wrap=True)
+
+
+def show_motion(console: Console, trajectory: Trajectory, motion: Motion, cycles: int) -> None:
+    """What a trajectory shows."""
+    console.print(
+        f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
+    )
+    if trajectory.message:
+        console.print(f"[bold red]stopped[/]: {escape(trajectory.message)}", soft_wrap=True)
+    ratio = "not completed" if motion.decay_ratio is None else f"{motion.decay_ratio:.4g} of the first amplitude"
+    console.print(f"{motion.cycles:g} cycles; after {cycles}: {ratio}")
+    if motion.frequency:
+        degrees = math.degrees(motion.amplitude)
+        console.print(
+            f"At the end: yaw +-{motion.amplitude:.4g} rad ({degrees:.3g} deg) about {motion.mean:.2g} rad, "
+            f"{motion.frequency:.4g} Hz",
+            soft_wrap=True,
+        )
+    table = _table("peak", "value", "unit")
+    for name in SHOWN_PEAKS:
+        if name in motion.peaks:
+            value, unit = motion.peaks[name], TRAJECTORY_UNITS[name]
+            table.add_row(name.replace("_", " "), *(_number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)))
+    console.print(table)
+
+
+def show_analysis(
+    console: Console,
+    study: Study,
+    design: Mapping[str, float],
+    critical: Sequence[CriticalSpeed],
+    worst: OperatingPoint,
+    certificates: Sequence[Certificate],
+) -> None:
+    """Critical speeds, worst point and certificates of a given design."""
+    console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
+    if design:
+        text = ", ".join(" ".join((name, *_number(value, UNITS[name]))) for name, value in design.items())
+        console.print(text, soft_wrap=True)
+    if critical:
+        table = _table("critical speed", "load", "kind", "frequency", "root", "gear")
+        for c in critical:
+            after = "unstable" if c.destabilising else "stable"
+            change = f"{after} above" if c.boundary else "unstable on both sides"
+            direction = "destabilised" if c.destabilising else "stabilised"
+            table.add_row(f"{c.speed:.4f} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
+        console.print(table)
+    else:
+        low, high = study.envelope.speed.min, study.envelope.speed.max
+        console.print(f"No critical speed between {low:g} and {high:g} m/s.")
+    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    for certificate in certificates:
+        goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
+        verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]not met[/]: {certificate.reason}"
+        console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for column in columns:
+        table.add_column(column, justify="right" if column in ("value", "mass, kg") else "left")
+    return table
+
+
+def _number(value: float, unit: str) -> tuple[str, str]:
+    if unit == "rad":
+        return f"{math.degrees(value):.4g}", "deg"
+    return f"{value:.5g}", unit
+
+
+def show_chart(console: Console, record: StabilityChart) -> None:
+    """Families of a chart with the length, kind and frequency of their curves."""
+    table = Table(box=None, pad_edge=False)
+    varied, unit = (record.varied.name, record.varied.unit) if record.varied else ("boundary", "")
+    for name in (varied, "curves", "points", "type", "frequency", "corners"):
+        table.add_column(name, justify="left" if name in (varied, "type") else "right")
+    for family in record.families:
+        hopf = np.concatenate([c.hopf for c in family.curves] or [np.zeros(0, bool)])
+        frequency = np.concatenate([c.frequency for c in family.curves] or [np.zeros(0)])[hopf]
+        kinds = [word for word, there in (("Hopf", hopf.any()), ("divergence", (~hopf).any())) if there]
+        everywhere = "stable" if family.origin_stable else "unstable"
+        value = "" if family.value is None else f"{family.value:g} {unit}"
+        band = f"{frequency.min():.3g} to {frequency.max():.3g} Hz" if frequency.size else ""
+        corners = sum(len(c.corners) for c in family.curves)
+        table.add_row(
+            value, str(len(family.curves)), str(hopf.size), " and ".join(kinds) or f"{everywhere} all over", band, str(corners)
+        )
+    console.print(table)
+    for family in record.families:
+        if family.abscissa is not None:
+            where = "" if family.value is None else f" at {family.value:g} {unit}"
+            console.print(f"Spectral abscissa of the design{where}: {family.abscissa:.6g} 1/s")
+    looked = sum(family.evaluations for family in record.families)
+    if all(family.explicit for family in record.families):
+        console.print(
+            f"Explicit curves (both quantities act at one joint) to {record.tolerance:g} of the ranges, "
+            f"checked with {looked} eigenvalue problems."
+        )
+    else:
+        console.print(
+            f"Traced to {record.tolerance:g} of the ranges with {looked} eigenvalue problems; islands smaller than "
+            f"{record.cell:.3g} of the ranges may be missed."
+        )
+
+
+def show_claims(console: Console, rows: Sequence[Row]) -> None:
+    """Claims of the thesis: a row each, a column for every form of the figures."""
+    forms = list(dict.fromkeys(row.form for row in rows))
+    table = Table(box=None, pad_edge=False)
+    for name in ("figure", "the text", *forms):
+        table.add_column(name)
+    found: dict[tuple[str, str], dict[str, str]] = {}
+    for row in rows:
+        found.setdefault((row.figure, row.claim), {})[row.form] = "agrees" if row.verdict.agrees else "differs"
+    for (number, claim), verdicts in found.items():
+        table.add_row(number, claim, *(verdicts.get(form, "") for form in forms))
+    console.print(table)
+    for form in forms:
+        agreed = [row.verdict.agrees for row in rows if row.form == form]
+        console.print(f"{form}: {sum(agreed)} of {len(agreed)} agree")

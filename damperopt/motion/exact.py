@@ -1,0 +1,301 @@
+"""Exact simulation: every corner of the model is an event, between events the motion is smooth.
+
+Nothing is rounded off here, and no integrator is shared with `integrators`: SciPy's Runge-Kutta method of order 8 runs from
+one event to the next, the closed linkage is solved by Newton's method at every evaluation, and dry friction sticks until
+the torque exceeds it. It checks the smooth model, and designs made with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ..dynamics import build
+from ..expressions.corners import Switched
+from ..stability.linear import linear_gear
+from ..study.disturbances import Disturbance
+from ..study.study import Study
+from ..symbols import data_values, symbolic
+from .question import output_points, posed, refuse_start, valid_part
+from .trajectory import Trajectory
+
+__all__ = ["ExactSimulator", "simulate_exactly"]
+
+MAX_EVENTS = 100_000
+
+FEWEST_POINTS = 2000
+
+NEWTON_TOLERANCE = 1e-14
+"""Step of the algebraic unknowns [m, rad] at which the linkage counts as closed."""
+
+NEWTON_STEPS = 50
+
+STEPS_PER_CYCLE = 40
+"""Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
+
+STEPS_WITHOUT_JOINTS = 12
+"""The same where the only corner is that of the slip limit, at which the moment of the tyre has no jump."""
+
+
+def simulate_exactly(
+    study: Study,
+    design: Mapping[str, float] | None = None,
+    *,
+    speed: float,
+    load: float | None = None,
+    disturbance: Disturbance | Mapping[str, Any],
+    duration: float = 3.0,
+    tolerance: float = 1e-10,
+    points: int | None = None,
+) -> Trajectory:
+    """Motion after a disturbance, with the corners of freeplay, stops, friction and slip limit as events.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping or None
+        Design variables [SI]; None: the starts of the study.
+    speed : float
+        [m/s]
+    load : float or None
+        Vertical load [N]; None: the largest of the envelope.
+    disturbance : Disturbance or mapping
+    duration : float
+        [s]
+    tolerance : float
+        Relative, of SciPy's DOP853; absolute 1/1000 of it.
+    points : int or None
+        Output points, evenly spaced; None: enough for every cycle of the fastest mode.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    ConfigError
+        If the question is not well posed.
+    """
+    return ExactSimulator(study, design)(speed, load, disturbance, duration, tolerance, points)
+
+
+class ExactSimulator:
+    """Exact motion of one gear with one design; see `simulate_exactly`.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping or None
+        Design variables [SI]; None: the starts of the study.
+    """
+
+    def __init__(self, study: Study, design: Mapping[str, float] | None = None):
+        self.study = study
+        design = study.start if design is None else design
+        self.gear = linear_gear(study, design)  # refuses an incomplete design
+        corners = Switched()
+        dae = build(symbolic(study), corners)
+        friction = corners.switches.pop("friction", None)
+        self.corners, self.friction_torque = len(corners.switches), study.gear.friction.torque if study.gear.friction else 0.0
+        self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
+        modes = [switch.mode for switch in corners.switches.values()]
+        modes += [friction.mode] if friction else [ca.SX.sym("no friction")]
+        step = ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ dae.alg if dae.z.numel() else dae.z
+        outputs = {"yaw_acceleration": dae.ode[1], **dae.outputs}
+        self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
+
+        inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
+        known = ca.vertcat(dae.design, dae.data), ca.DM([*(design[name] for name in dae.design_names), *data_values(study)])
+        arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
+        motion = [dae.ode, step, arguments, ca.SX(dae.outputs["torque_without_friction"])]
+        rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
+        self.motion = _Fast(inputs, [ca.substitute(e, *known) for e in motion])
+        self.rows = _Fast(inputs, [ca.substitute(rows, *known)])
+        self.first_guess = _Fast(inputs, [ca.substitute(ca.SX(dae.first_guess()), *known)])
+
+    def __call__(
+        self,
+        speed: float,
+        load: float | None,
+        disturbance: Disturbance | Mapping[str, Any],
+        duration: float,
+        tolerance: float = 1e-10,
+        points: int | None = None,
+    ) -> Trajectory:
+        """Motion at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate_exactly`."""
+        load = max(self.study.envelope.loads) if load is None else load
+        disturbance = posed(self.study, self.state_names, speed, load, disturbance, duration)
+        enough = output_points(self.gear, speed, load, duration)
+        time = np.linspace(0, duration, max(enough + 1, FEWEST_POINTS) if points is None else points)
+        rows, message = _Run(self, speed, load, disturbance, tolerance).rows_at(time)
+        values = np.vstack([np.array(rows).T, np.zeros(len(rows))])
+        names = (*self.names, "unclosed")  # the unknowns solve the equations, or the run stops
+        refuse_start(values[:, :1], names, self.study)
+        kept, beyond = valid_part(values, names, self.study)
+        values, message = values[:, :kept], beyond or message
+        time = time[: values.shape[1]]
+        named = dict(zip(names, values, strict=True))
+        states = {name: named.pop(name) for name in self.state_names}
+        if message:
+            message = f"{message} after {time[-1]:.4g} s"
+        return Trajectory(speed, load, time, states, named, "stopped" if message else "completed", message, "exact")
+
+
+class _Fast:
+    """A CasADi function of vectors, called without its overhead (about 20 us)."""
+
+    def __init__(self, inputs: list[ca.SX], outputs: list[ca.SX]):
+        function = ca.Function("fast", inputs, [ca.densify(ca.SX(e)) for e in outputs])
+        self._buffer, self._evaluate = function.buffer()
+        self._in = [np.zeros(e.numel()) for e in inputs]
+        self._out = [np.zeros(e.numel()) for e in outputs]
+        for k, array in enumerate(self._in):
+            self._buffer.set_arg(k, memoryview(array))  # type: ignore[arg-type, call-arg]  # CasADi's stub lacks memoryviews
+        for k, array in enumerate(self._out):
+            self._buffer.set_res(k, memoryview(array))  # type: ignore[arg-type, call-arg]  # and the second argument
+
+    def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:
+        """Outputs, in arrays that the next call overwrites."""
+        for mine, given in zip(self._in, arguments, strict=True):
+            mine[:] = given
+        self._evaluate()
+        return self._out
+
+
+class _CannotClose(Exception):
+    pass
+
+
+class _Run:
+    """One motion, from event to event."""
+
+    def __init__(self, model: ExactSimulator, speed: float, load: float, disturbance: Disturbance, tolerance: float):
+        self._model, self._tolerance = model, tolerance
+        self._torque, self._unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
+        self._wheel_rate = speed / model.study.gear.wheel_radius
+        self._point = np.array([speed, load, 0.0])
+        self._x0 = np.array(disturbance.start(model.state_names))
+        # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
+        self._modes = np.ones(model.corners + 1)
+        self._modes[-1] = 0.0
+        self._sticks = False
+        self._z = model.first_guess(self._x0, np.zeros(model.motion._in[1].size), self._modes, self._point)[0].copy()
+        fastest = np.abs(np.linalg.eigvals(model.gear.matrices(speed, load)[0]).imag).max()
+        steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
+        self._max_step = 2 * math.pi / max(fastest, 20.0) / steps
+
+    def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
+        """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""
+        self._point[2] = self._torque
+        if self._unbalance:
+            self._point[2] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
+        if not self._z.size:
+            return self._model.motion(x, self._z, self._modes, self._point)
+        for _ in range(NEWTON_STEPS):
+            found = self._model.motion(x, self._z, self._modes, self._point)
+            change = np.abs(found[1]).max()
+            if change < NEWTON_TOLERANCE:
+                return found
+            if not np.isfinite(change):
+                break
+            self._z = self._z - found[1]
+        self._z = self._model.first_guess(x, self._z, self._modes, self._point)[0].copy()
+        raise _CannotClose
+
+    def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
+        rate = self._evaluated(t, x)[0].copy()
+        if self._sticks:
+            rate[1] = 0.0
+        return rate
+
+    def rows_at(self, time: np.ndarray) -> tuple[list[np.ndarray], str]:
+        """States and outputs at `time`, and why it ended early."""
+        t, x = 0.0, self._x0
+        rows: list[np.ndarray] = []
+        try:
+            self._settle(t, x, range(len(self._modes)))
+            rows.append(self._row(t, x))
+            for _ in range(MAX_EVENTS):
+                leg = solve_ivp(
+                    self._rate,
+                    (t, time[-1]),
+                    x,
+                    method="DOP853",
+                    rtol=self._tolerance,
+                    atol=self._tolerance / 1000,
+                    max_step=self._max_step,
+                    first_step=min(1e-3 * self._max_step, (time[-1] - t) / 2),
+                    events=self._events(),
+                    dense_output=True,
+                )
+                last = leg.t[-1]
+                for moment in time[len(rows) :]:
+                    if moment > last or (moment == last and leg.status == 1):
+                        break
+                    rows.append(self._row(moment, leg.sol(moment)))
+                if leg.status != 1:
+                    return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
+                t, x = last, leg.y[:, -1].copy()
+                self._cross(t, x, [i for i, times in enumerate(leg.t_events) if times.size])
+        except _CannotClose:
+            return rows, "the equations of the closed linkage are not solved"
+        return rows, f"more than {MAX_EVENTS} events"
+
+    def _row(self, t: float, x: np.ndarray) -> np.ndarray:
+        self._evaluated(t, x)
+        return self._model.rows(x, self._z, self._modes, self._point)[0].copy()
+
+    def _events(self) -> list[Callable[[float, np.ndarray], float]]:
+        """Functions that fall through zero when a corner is passed, friction last."""
+
+        def corner(i: int) -> Callable[[float, np.ndarray], float]:
+            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i])
+
+        def grip(t: float, x: np.ndarray) -> float:
+            if self._sticks:
+                return self._model.friction_torque - abs(float(self._evaluated(t, x)[3][0]))
+            return float(x[1] * self._modes[-1])
+
+        functions = [corner(i) for i in range(self._model.corners)]
+        functions += [grip] if self._model.friction_torque else []
+        for function in functions:
+            function.terminal, function.direction = True, -1  # type: ignore[attr-defined]  # how SciPy is told
+        return functions
+
+    def _cross(self, t: float, x: np.ndarray, passed: list[int]) -> None:
+        """Change the modes of the corners that were passed, and of those that this moves."""
+        for i in passed:
+            if i < self._model.corners:
+                self._modes[i] *= -1
+        others = [i for i in range(self._model.corners) if i not in passed]
+        if self._model.corners in passed and self._sticks:
+            self._settle(t, x, others)
+            torque = float(self._evaluated(t, x)[3][0])
+            self._sticks, self._modes[-1] = False, np.sign(torque)
+            return
+        if self._model.corners in passed:
+            x[1] = 0.0
+        self._settle(t, x, [*others, self._model.corners])
+
+    def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
+        """Modes that go with a state; a corner that is met exactly is judged by where the motion goes."""
+        for _ in range(2):  # a corner's argument may hang on the mode of another
+            arguments = self._evaluated(t, x)[2].copy()
+            ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
+            for i in which:
+                if i < self._model.corners:
+                    side = arguments[i] if arguments[i] else ahead[i]
+                    self._modes[i] = np.sign(side) if side else self._modes[i]
+        if not self._model.friction_torque or self._model.corners not in which:
+            return
+        if x[1] == 0.0:
+            torque = float(self._evaluated(t, x)[3][0])
+            self._sticks = abs(torque) <= self._model.friction_torque
+            self._modes[-1] = 0.0 if self._sticks else np.sign(torque)
+        else:
+            self._sticks, self._modes[-1] = False, np.sign(x[1])

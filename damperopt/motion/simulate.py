@@ -1,0 +1,174 @@
+"""Transient motion of a gear after a disturbance, on the nonlinear model with its smooth elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..dynamics import build
+from ..errors import ConfigError
+from ..expressions.corners import Smooth
+from ..expressions.dae import DAE, eliminate
+from ..stability.linear import linear_gear
+from ..study.disturbances import Disturbance
+from ..study.study import Study
+from ..symbols import data_values, symbolic
+from .integrators import ENGINES, NEWTON_STEPS, Integrator, best_engine
+from .question import output_points, posed, refuse_start, valid_part
+from .trajectory import Trajectory
+
+__all__ = ["Outputs", "Simulator", "simulate"]
+
+STEPS = 256
+"""Output steps of one stretch; validity is checked after each stretch."""
+
+
+def simulate(
+    study: Study,
+    design: Mapping[str, float] | None = None,
+    *,
+    speed: float,
+    load: float | None = None,
+    disturbance: Disturbance | Mapping[str, Any],
+    duration: float = 3.0,
+    engine: str = "auto",
+    tolerance: float = 1e-8,
+) -> Trajectory:
+    """Motion after a disturbance.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping or None
+        Design variables [SI]; None: the starts of the study.
+    speed : float
+        [m/s]
+    load : float or None
+        Vertical load [N]; None: the largest of the envelope.
+    disturbance : Disturbance or mapping
+        Such as ``{"release": {"yaw_angle": "1 deg"}}``.
+    duration : float
+        [s]
+    engine : str
+        ``erk``, ``cvodes``, ``idas``, or ``auto``: the fastest here.
+    tolerance : float
+        Of the integrator, relative.
+
+    Returns
+    -------
+    Trajectory
+        Cut short, with the status ``stopped``, where the model leaves its validity.
+
+    Raises
+    ------
+    ConfigError
+        If the question is not well posed.
+
+    Examples
+    --------
+    >>> import damperopt
+    >>> study = damperopt.load("configs/minimal.yaml")
+    >>> motion = simulate(study, speed=40, disturbance={"release": {"yaw_angle": "1 deg"}}, duration=0.5)
+    >>> motion.status
+    'completed'
+    """
+    return Simulator(study, design, engine, tolerance)(speed, load, disturbance, duration)
+
+
+class Simulator:
+    """Transient motion of one gear with one design, at any speed, load and disturbance.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping or None
+        Design variables [SI]; None: the starts of the study.
+    engine : str
+        ``erk``, ``cvodes``, ``idas``, or ``auto``: the fastest here.
+    tolerance : float
+        Of the integrator, relative.
+    """
+
+    def __init__(self, study: Study, design: Mapping[str, float] | None = None, engine: str = "auto", tolerance: float = 1e-8):
+        if engine not in ("auto", *ENGINES):
+            raise ConfigError(f"engine: found '{engine}'; allowed: auto, {', '.join(ENGINES)}")
+        if not 1e-13 <= tolerance <= 1e-3:
+            raise ConfigError(f"tolerance: found {tolerance}; allowed: 1e-13 to 1e-3")
+        self.study, self.engine = study, best_engine() if engine == "auto" else engine
+        design = study.start if design is None else design
+        self._gear = linear_gear(study, design)  # refuses an incomplete design
+        dae = build(symbolic(study), Smooth())
+        self._state_names = dae.state_names
+        self._design = [design[name] for name in dae.design_names]
+        self._integrator = Integrator(dae, data_values(study), STEPS, self.engine, tolerance)
+        self._outputs = Outputs(dae, study, self._design)
+
+    def __call__(
+        self, speed: float, load: float | None, disturbance: Disturbance | Mapping[str, Any], duration: float
+    ) -> Trajectory:
+        """Motion at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate`."""
+        load = max(self.study.envelope.loads) if load is None else load
+        disturbance = posed(self.study, self._state_names, speed, load, disturbance, duration)
+        stretches = math.ceil(output_points(self._gear, speed, load, duration) / STEPS)
+        stretch, rate = duration / stretches, speed / self.study.gear.wheel_radius
+        torque, unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
+        x = np.array(disturbance.start(self._state_names))[:, None]
+        columns, times = [self._outputs(x, speed, load, torque)], [np.zeros(1)]
+        refuse_start(columns[0], self._outputs.names, self.study)
+        message, t, length = "", 0.0, stretch
+        while not message and duration - t > 1e-9 * duration:
+            length = min(length, duration - t)
+            try:
+                states = self._integrator(x[:, -1], self._design, speed, load, length, t, None, torque, unbalance, rate).x
+            except FloatingPointError as error:
+                length /= 4  # up to where it fails
+                message = str(error) if length < stretch / STEPS else ""
+                continue
+            time = t + np.linspace(0, length, STEPS + 1)
+            values = self._outputs(states, speed, load, torque + unbalance * rate**2 * np.sin(rate * time))
+            kept, message = valid_part(values, self._outputs.names, self.study)
+            columns.append(values[:, 1:kept])
+            times.append(time[1:kept])
+            x, t = states, time[-1]
+        values, time = np.hstack(columns), np.concatenate(times)
+        named = dict(zip(self._outputs.names, values, strict=True))
+        kept_states = {name: named.pop(name) for name in self._state_names}
+        if message:
+            message = f"{message} after {time[-1]:.4g} s"
+        return Trajectory(speed, load, time, kept_states, named, "stopped" if message else "completed", message, self.engine)
+
+
+class Outputs:
+    """States and outputs of the smooth model at given states.
+
+    Parameters
+    ----------
+    dae : DAE
+    study : Study
+    design : sequence of float
+        Design variables [SI].
+
+    Attributes
+    ----------
+    names : tuple of str
+        States, yaw_acceleration, and the outputs of the model.
+    """
+
+    def __init__(self, dae: DAE, study: Study, design: Sequence[float]):
+        model = eliminate(dae, NEWTON_STEPS)
+        outputs = {"yaw_acceleration": model.ode[1], **model.outputs}
+        self.names = (*model.state_names, *outputs)
+        self._known = ca.DM(design), ca.DM(data_values(study))
+        values = [model.x, *(ca.SX(value) for value in outputs.values())]
+        self._function = ca.Function("outputs", [model.x, *model.parameters], [ca.vertcat(*values)])
+
+    def __call__(self, states: np.ndarray, speed: float, load: float, yaw_torque: Any) -> np.ndarray:
+        """(k, m) values by `names` at (n, m) states; external yaw torque (m,) or scalar [N m]."""
+        design, data = self._known
+        m = states.shape[1]
+        torque = np.broadcast_to(yaw_torque, m)[None, :]
+        return self._function(states, ca.repmat(design, 1, m), speed, load, ca.repmat(data, 1, m), torque).full()

@@ -1,0 +1,169 @@
+"""A trajectory and what it shows: cycles, decay, peaks, and whether it settles, cycles or diverges."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from .measure import crossings, decay, extrema
+
+__all__ = ["TRAJECTORY_UNITS", "Motion", "Trajectory", "motion_of"]
+
+Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "growing", "diverging"]
+
+STEADY = 2e-3
+"""Relative change of the amplitude per cycle below which a motion counts as a limit cycle."""
+
+SETTLED = 1e-2
+"""Fraction of the largest amplitude below which a decaying motion counts as settled."""
+
+TRAJECTORY_UNITS = {
+    "time": "s",
+    "yaw_angle": "rad",
+    "yaw_rate": "rad/s",
+    "yaw_acceleration": "rad/s^2",
+    "bending_angle": "rad",
+    "bending_rate": "rad/s",
+    "string_deflection": "m",
+    "dashpot_stroke": "m",
+    "link_angle": "rad",
+    "damper_stroke": "m",
+    "damper_speed": "m/s",
+    "damper_force": "N",
+    "spring_deflection": "m",
+    "spring_force": "N",
+    "stop_force": "N",
+    "linkage_torque": "N m",
+    "torque_without_friction": "N m",
+    "slip_angle": "rad",
+    "side_force": "N",
+    "aligning_moment": "N m",
+    "lateral_displacement": "m",
+    "arm_stress": "Pa",
+    "unclosed": "m",
+}
+"""SI unit of every state and output; for a damper given about the yaw axis strokes are angles and forces torques."""
+
+
+ROUNDING = 1e-9
+"""Amplitude [rad] that is nothing but integration error."""
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Motion of the gear after a disturbance.
+
+    Attributes
+    ----------
+    speed, load : float
+        [m/s], [N]
+    time : ndarray
+        (n,) [s]
+    states, outputs : dict of str to ndarray
+        (n,) each [SI]: the states of the model, and forces, strokes, slip and stress.
+    status : str
+        ``completed``, or ``stopped`` where the model left its validity.
+    message : str
+        Why it stopped; empty if completed.
+    engine : str
+        Integrator.
+    """
+
+    speed: float
+    load: float
+    time: np.ndarray
+    states: Mapping[str, np.ndarray]
+    outputs: Mapping[str, np.ndarray]
+    status: Literal["completed", "stopped"]
+    message: str
+    engine: str
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """State or output by name."""
+        return self.states[name] if name in self.states else self.outputs[name]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a trajectory shows.
+
+    Attributes
+    ----------
+    kind : str
+        ``settled``, ``decaying``, ``limit cycle``, ``growing`` or ``diverging`` (it left the validity of the model).
+    cycles : float
+        Cycles of the yaw angle that were completed, from its first extremum.
+    decay_ratio : float or None
+        Largest yaw angle in magnitude after m cycles over the first extremum; None if there were fewer cycles.
+    amplitude, frequency : float
+        Of the yaw angle at the end: half the peak-to-peak value [rad], [Hz].
+    mean : float
+        Middle between the last two extrema [rad]: not zero where the motion is asymmetric.
+    peaks : dict of str to float
+        Largest magnitude of every state and output [SI].
+    """
+
+    kind: Kind
+    cycles: float
+    decay_ratio: float | None
+    amplitude: float
+    frequency: float
+    mean: float
+    peaks: dict[str, float]
+
+
+def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
+    """Cycles, decay, peaks and kind of a motion, from its yaw angle.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    cycles : int
+        m, after which the decay is taken.
+
+    Returns
+    -------
+    Motion
+    """
+    t, psi, rate = trajectory.time, trajectory["yaw_angle"], trajectory["yaw_rate"]
+    zeros = crossings(t, psi, rate)
+    turns, values = extrema(t, psi, rate)
+    if rate[0] == 0 and psi[0] != 0:
+        turns, values = np.append(t[0], turns), np.append(psi[0], values)
+    peaks = {name: float(np.abs(v).max()) for name, v in {**trajectory.states, **trajectory.outputs}.items()}
+    counted = zeros[zeros > turns[0]] if turns.size else zeros[:0]
+    found = decay(t, psi, rate, cycles)
+    ratio = found.ratio if found else None
+    amplitudes, middles = np.abs(np.diff(values)) / 2, (values[1:] + values[:-1]) / 2
+    done = max(counted.size - 1, 0) / 2
+    if amplitudes.size < 6:
+        end = psi[-max(len(psi) // 10, 2) :]
+        last = float(np.abs(end).max())
+        ends: Kind = "diverging" if trajectory.status == "stopped" else _kind_of_ends(end, float(np.abs(psi).max()))
+        return Motion(ends, done, ratio, last, 0.0, 0.0, peaks)
+    recent = slice(-max(6, min(20, amplitudes.size // 3)), None)
+    per_cycle = 2 * np.polyfit(np.arange(amplitudes[recent].size), np.log(amplitudes[recent] + 1e-300), 1)[0]
+    frequency = (turns[recent].size - 1) / 2 / (turns[recent][-1] - turns[recent][0])
+    amplitude, largest = float(amplitudes[-1]), float(amplitudes.max())
+    kind: Kind
+    if trajectory.status == "stopped":
+        kind = "diverging"
+    elif amplitude < ROUNDING:
+        kind = "settled"
+    elif abs(per_cycle) < STEADY and np.ptp(amplitudes[recent]) < 0.02 * amplitude:
+        kind = "limit cycle"
+    elif per_cycle > 0:
+        kind = "growing"
+    else:
+        kind = "settled" if amplitude < SETTLED * largest else "decaying"
+    return Motion(kind, done, ratio, amplitude, float(frequency), float(middles[-1]), peaks)
+
+
+def _kind_of_ends(end: np.ndarray, largest: float) -> Kind:
+    """Kind of a motion with too few cycles to judge by its extrema, from its last tenth."""
+    if np.ptp(end) < SETTLED * largest:  # at rest, be it away from zero
+        return "settled"
+    return "growing" if np.abs(end).max() == largest else "decaying"

@@ -1,0 +1,197 @@
+"""Why no design exists: what is missing by how much, and which single requirement would make room if it gave way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..results import Infeasibility, OperatingPoint, Relaxation
+from ..stability.worst import worst_points
+from .exchange import best_local, first_points, solve_with_decay
+from .problem import DesignProblem
+from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program, relaxable
+from .scan import steady_designs
+from .solve import NlpSolver
+
+__all__ = ["Diagnosis", "diagnose"]
+
+_STABILITY = "stability_margin"
+
+STEADY = 2
+"""Layouts of the steadiest kind to start from."""
+
+ENOUGH = 1e-6
+"""Slack (logarithmic, in m, or in 1/s) that counts as none."""
+
+ROUNDS = 8
+
+HOLDS_BACK = 1e-3
+"""Multiplier above which a constraint stands in the way of a lower decay ratio (the unit being `program.EXCESS_PRICE`)."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Outcome of `diagnose`: a design that needs no relaxation after all, or the reasons why there is none."""
+
+    feasible_design: dict[str, float] | None
+    infeasibility: Infeasibility | None
+
+
+@dataclass(frozen=True)
+class _Elastic:
+    price: float
+    design: dict[str, float]
+    slacks: dict[str, float]
+    speed: float
+    load: float
+
+
+def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagnosis:
+    """Least relaxation of a study for which no start has led to a design.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    starts : sequence of mapping
+        Designs to start from, beside the steadiest layouts; the best outcome counts.
+
+    Returns
+    -------
+    Diagnosis
+
+    Notes
+    -----
+    Every relaxation that is reported belongs to a design whose rows and worst abscissa were evaluated, whether or not IPOPT
+    converged to it: it is enough. That no smaller one exists is not proved.
+    """
+    if solver.problem.study.required.decay is not None:
+        rest = NlpSolver(DesignProblem(solver.problem.study.replace(requirements__decay=None)))
+        found = diagnose(rest, starts)
+        if found.feasible_design is None:
+            return found
+        return _decay_out_of_reach(solver, [found.feasible_design, *steady_designs(solver.problem, STEADY)])
+    starts = [*steady_designs(solver.problem, STEADY), *starts]
+    everything = (*solver.problem.constraint_names, _STABILITY)
+    least = _least(solver, starts, everything)
+    if least is None:
+        return Diagnosis(None, None)
+    if max(least.slacks.values()) < ENOUGH:
+        return Diagnosis(least.design, None)
+    each = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything}
+    alone = {name: elastic for name, elastic in each.items() if elastic is not None}
+    # the elastic program has local optima: one relaxation alone may turn out cheaper than what it found for all
+    least = min([least, *alone.values()], key=lambda elastic: elastic.price)
+    short = [name for name, slack in least.slacks.items() if slack > ENOUGH]
+    return Diagnosis(
+        None,
+        Infeasibility(
+            shortfalls=tuple(_relaxation(solver, least, name) for name in short),
+            alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in alone.items()),
+        ),
+    )
+
+
+def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagnosis:
+    """Least decay ratio of all designs that meet the other requirements, and which of these would make room."""
+    problem, points = solver.problem, first_points(solver)
+    reached = [best_local(solver, start, points) for start in starts]
+    for found in reached:
+        if found.solved:
+            return Diagnosis(found.solution.design, None)
+    reached = [found for found in reached if found.decay]
+    if not reached:
+        return Diagnosis(None, None)
+    best = min(reached, key=lambda found: found.decay[0].ratio)
+    at_bounds = np.abs(best.solution.bound_multipliers[:-1]) > HOLDS_BACK
+    bounds = tuple(f"design.{v.name}" for v, at in zip(problem.variables, at_bounds, strict=False) if at)
+    required, worst = problem.study.required.decay, best.decay[0]
+    assert required is not None
+    ratio = Relaxation(
+        name="decay_ratio",
+        limit=required.ratio,
+        needed=worst.ratio,
+        unit="1",
+        inputs=("requirements.decay.ratio", "requirements.decay.cycles", *bounds),
+        speed=worst.speed,
+        load=worst.load,
+    )
+    alone = [ratio]
+    for constraint, multiplier in zip(problem.constraints, best.solution.row_multipliers, strict=True):
+        if multiplier <= HOLDS_BACK:
+            continue
+        form, name = ElasticHurwitzProgram, constraint.name
+        relaxed = solve_with_decay(solver, best.solution.design, best.solution.points, form, relaxed=(name,))
+        rows = problem.rows(relaxed.solution.design)
+        if relaxed.solved and all(row <= ENOUGH for other, row in rows.items() if other != name):
+            outcome = _outcome(solver, relaxed.solution.design, relaxed.worst[0])
+            alone.append(_relaxation(solver, outcome, name))
+    return Diagnosis(None, Infeasibility(shortfalls=(ratio,), alone_enough=tuple(alone)))
+
+
+def _least(solver: NlpSolver, starts: Sequence[Mapping[str, float]], relaxed: Sequence[str]) -> _Elastic | None:
+    """Cheapest outcome over the starts and both programs; a second program runs only where the first fails."""
+    found: list[_Elastic] = []
+    for start in starts:
+        for form in (ElasticHurwitzProgram, ElasticFactorProgram):
+            outcomes, converged = _elastic(solver, start, relaxed, form)
+            found += outcomes
+            if converged:
+                break
+    return min(found, key=lambda elastic: elastic.price, default=None)
+
+
+def _elastic(
+    solver: NlpSolver, start: Mapping[str, float], relaxed: Sequence[str], form: type[Program]
+) -> tuple[list[_Elastic], bool]:
+    """Designs on the way of the elastic program that need no other relaxation, and whether it converged."""
+    problem = solver.problem
+    points, design = first_points(solver), dict(start)
+    outcomes = []
+    for _ in range(ROUNDS):
+        solution = solver.solve(design, points, form, relaxed=relaxed)
+        design = solution.design
+        worst = worst_points(problem.model.at(design), problem.study.envelope)
+        outcome = _outcome(solver, design, worst[0])
+        if all(slack <= ENOUGH or name in relaxed for name, slack in outcome.slacks.items()):
+            outcomes.append(outcome)
+        if not solution.converged:
+            return outcomes, False
+        margin = solution.extra[len(relaxable(problem)) - 1]  # after the slacks
+        violating = [p for p in worst if p.abscissa > -margin - problem.study.solver.margin_reserve / 2]
+        if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
+            return outcomes, True
+        points += [(p.speed, p.load) for p in violating]
+    return outcomes, False
+
+
+def _outcome(solver: NlpSolver, design: dict[str, float], worst: OperatingPoint) -> _Elastic:
+    """What a design would need to be relaxed, and at what price (that of the elastic program)."""
+    problem = solver.problem
+    required = problem.study.required.stability_margin
+    slacks = {name: max(row, 0.0) for name, row in problem.rows(design).items()}
+    price = sum((1 if c.ratio else 10) * slacks[c.name] for c in problem.constraints)
+    slacks[_STABILITY] = max(required + worst.abscissa, 0.0)
+    price += slacks[_STABILITY] / max(required, 0.1)
+    return _Elastic(price, design, slacks, worst.speed, worst.load)
+
+
+def _relaxation(solver: NlpSolver, elastic: _Elastic, name: str) -> Relaxation:
+    problem, slack = solver.problem, elastic.slacks[name]
+    if name == _STABILITY:
+        required = problem.study.required.stability_margin
+        return Relaxation(
+            name=name,
+            limit=required,
+            needed=required - slack,
+            unit="1/s",
+            inputs=("requirements.stability_margin", "envelope.speed", "envelope.vertical_load"),
+            speed=elastic.speed,
+            load=elastic.load,
+        )
+    constraint = problem.constraints[problem.constraint_names.index(name)]
+    _, limit = problem.values(elastic.design)[name]
+    sign = -1 if constraint.at_least else 1
+    needed = limit * float(np.exp(sign * slack)) if constraint.ratio else limit + sign * slack
+    return Relaxation(name=name, limit=limit, needed=needed, unit=constraint.unit, inputs=constraint.relaxed_by)

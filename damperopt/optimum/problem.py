@@ -1,0 +1,227 @@
+"""The design problem: variables, mass and constraints of one layout and material, as symbols and as plain functions.
+
+`program` makes nonlinear programs of it; the plain functions serve reports, tests and any other optimiser.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..dynamics import build
+from ..linkages.planar import linkage
+from ..motion.decay import decay_analysis
+from ..motion.measure import PEAKS
+from ..objectives import limit_event, mass_parts, rod_diameters
+from ..stability.linear import LinearModel
+from ..study.study import Study
+from ..study.variables import DESIGN_VARIABLES
+from ..symbols import data_names, data_values, symbolic
+from .constraints import Constraint, geometry, strength
+
+__all__ = ["DesignProblem", "ScaledVariable"]
+
+_LINEAR = ("gamma",)
+ROD = "rod_diameter"
+ESTIMATED = np.ones(len(PEAKS))
+"""Factors of a limit event that is not simulated."""
+
+
+@dataclass(frozen=True)
+class ScaledVariable:
+    """A variable of the program: x = log(value), or the value itself where `logarithmic` is False."""
+
+    name: str
+    start: float
+    lower: float
+    upper: float
+    logarithmic: bool
+
+    def scale(self, value: float) -> float:
+        return math.log(value) if self.logarithmic else value
+
+    def unscale(self, x: float) -> float:
+        """Value of the scaled `x`, never outside the bounds by rounding."""
+        return min(max(math.exp(x) if self.logarithmic else x, self.lower), self.upper)
+
+
+class DesignProblem:
+    """Lightest design of one layout and material.
+
+    Parameters
+    ----------
+    study : Study
+        With one of the layouts that can be optimised.
+
+    Attributes
+    ----------
+    variables : tuple of ScaledVariable
+        Design variables and the rod diameter.
+    constraints : tuple of Constraint
+        Strength and geometry, in the order of `rows`.
+    shifted_matrix : casadi.Function
+        (design, data, speed, load) -> A + (margin + reserve) 1, stable iff the margin holds.
+    """
+
+    def __init__(self, study: Study):
+        self.study = study
+        self.model = LinearModel(study)
+        self.design_names = DESIGN_VARIABLES[study.damper.topology]
+        self.data = np.array(data_values(study))
+        self.data_names = data_names(study)
+        self.load_limit = max(study.envelope.loads)
+        self._factors: dict[tuple[float, ...], np.ndarray] = {}
+
+        symbols = symbolic(study)
+        dae = build(symbols)
+        design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
+        rod, load = ca.SX.sym(ROD), ca.SX.sym("load_limit")
+        link = linkage(symbols.study.damper, design, symbols.study.material.youngs_modulus)
+        factors = ca.SX.sym("factors", len(PEAKS))
+        event = limit_event(symbols.study, link, design["c_lambda"], load, factors)
+        parts = mass_parts(symbols.study, design, link, event, rod)
+        self.constraints: tuple[Constraint, ...] = tuple(
+            strength(symbols.study, design, event, rod) + geometry(symbols.study, design, link, event, rod)
+        )
+        self.part_names = tuple(parts)
+        self.constraint_names = tuple(c.name for c in self.constraints)
+        inputs = [dae.design, rod, symbols.data, load, factors]
+        self._mass = ca.Function("mass", inputs, [ca.vertcat(*parts.values())])
+        self._rows = ca.Function("rows", inputs, [ca.vertcat(*(c.row for c in self.constraints))])
+        self._values = ca.Function("values", inputs, [ca.vertcat(*(ca.horzcat(c.value, c.limit) for c in self.constraints))])
+        without_rod = [*inputs[:1], *inputs[2:]]
+        self._rod = ca.Function("rod", without_rod, [ca.vertcat(*rod_diameters(symbols.study, event).values())])
+        self._event = ca.Function("event", without_rod, [event.peaks])
+        self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, link.torsional_damping])
+
+        margin = symbols.study.requirements.stability_margin + study.solver.margin_reserve
+        shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
+        shifted += margin * ca.SX.eye(dae.x.numel())
+        self.shifted_matrix = ca.Function("shifted", [dae.design, symbols.data, dae.speed, dae.load], [shifted])
+        rod_variable = ScaledVariable(ROD, 0.02, 1e-5, 10.0, True)
+        self.variables = (*map(self._variable, self.design_names), rod_variable)
+
+    def _variable(self, name: str) -> ScaledVariable:
+        given = self.study.variable(name)
+        return ScaledVariable(name, given.start, given.min, given.max, name not in _LINEAR)
+
+    def mass_and_rows(
+        self, design: ca.SX, rod: ca.SX, data: ca.SX, load_limit: ca.SX, factors: Any = ESTIMATED
+    ) -> tuple[ca.SX, ca.SX]:
+        """Total mass [kg] and the strength and geometry rows (<= 0) as expressions."""
+        inputs = [design, rod, data, load_limit, factors]
+        return ca.sum1(self._mass(*inputs)), self._rows(*inputs)
+
+    def estimated_peaks(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> ca.SX:
+        """(5,) `decay.PEAKS` of the limit event before any simulation, as expressions."""
+        return self._event(design, data, load_limit, ESTIMATED)
+
+    def stiffness_and_damping(self, design: ca.SX, data: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Torsional stiffness [N m/rad] and damping [N m s/rad] as expressions."""
+        k_psi, c_psi = self._yaw(design, data)
+        return k_psi, c_psi
+
+    def physical(self, x: ca.SX) -> ca.SX:
+        """Design variables and rod diameter [SI] of scaled variables."""
+        return ca.vertcat(*(ca.exp(x[i]) if v.logarithmic else x[i] for i, v in enumerate(self.variables)))
+
+    # plain functions of a design, for reports, tests and other optimisers
+
+    def mass(self, design: Mapping[str, float]) -> float:
+        """Total mass of a design with the lightest admissible rod [kg]."""
+        return float(sum(self.parts(design).values()))
+
+    def parts(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Mass by part [kg]."""
+        return dict(zip(self.part_names, self._call(self._mass, design), strict=True))
+
+    def rows(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Strength and geometry rows, <= 0 where met (logarithmic ratios, or metres); the rod limits are met by sizing."""
+        return dict(zip(self.constraint_names, self._call(self._rows, design), strict=True))
+
+    def values(self, design: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+        """Value and limit of each strength and geometry constraint [SI]."""
+        pairs = np.reshape(self._call(self._values, design), (2, -1)).T
+        return {name: (float(v), float(lim)) for name, (v, lim) in zip(self.constraint_names, pairs, strict=True)}
+
+    def yaw_numbers(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Effective torsional stiffness and damping of a design."""
+        stiffness, damping = self._yaw(self._vector(design), self.data)
+        return {"torsional_stiffness": float(stiffness), "torsional_damping": float(damping)}
+
+    def limit_event(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Peaks of the limit event by name [SI], in the order of `decay.PEAKS`."""
+        peaks = self._event(self._vector(design), self.data, self.load_limit, self.factors(design))
+        return dict(zip(PEAKS, peaks.full().ravel().tolist(), strict=True))
+
+    def factors(self, design: Mapping[str, float]) -> np.ndarray:
+        """(5,) simulated over estimated peaks of the limit event; ones where a torque is the limit event."""
+        if self.study.required.limit_event != "simulated":
+            return ESTIMATED
+        key = tuple(self._vector(design))
+        if key not in self._factors:
+            simulated = decay_analysis(self.study).largest_peaks(design)[0]
+            estimated = self._event(self._vector(design), self.data, self.load_limit, ESTIMATED).full().ravel()
+            self._factors = {key: simulated / estimated}  # the last design is asked for several times
+        return self._factors[key]
+
+    def rod_diameter(self, design: Mapping[str, float]) -> float:
+        """Least rod diameter that meets yield and buckling [m]."""
+        return float(self._rod(self._vector(design), self.data, self.load_limit, self.factors(design)).full().max())
+
+    def over_designs(self, designs: np.ndarray, factors: np.ndarray = ESTIMATED) -> dict[str, np.ndarray]:
+        """Everything that needs no speed, for many designs at once.
+
+        Parameters
+        ----------
+        designs : ndarray
+            (m, n) design variables in the order of `design_names` [SI].
+        factors : ndarray
+            As `factors`, the same for all.
+
+        Returns
+        -------
+        dict
+            ``mass`` (m,) [kg], ``rows`` (m, c) as `rows`, ``torsional_stiffness`` and ``torsional_damping`` (m,).
+        """
+        columns, data, load = designs.T, ca.DM(self.data), self.load_limit
+        rod = self._rod(columns, data, load, factors).full().max(axis=0)[None, :]
+        stiffness, damping = self._yaw(columns, data)
+        return {
+            "mass": self._mass(columns, rod, data, load, factors).full().sum(axis=0),
+            "rows": self._rows(columns, rod, data, load, factors).full().T,
+            "torsional_stiffness": stiffness.full().ravel(),
+            "torsional_damping": damping.full().ravel(),
+        }
+
+    def _vector(self, design: Mapping[str, float]) -> np.ndarray:
+        return np.array([design[name] for name in self.design_names])
+
+    def _call(self, function: ca.Function, design: Mapping[str, float]) -> list[float]:
+        rod, factors = self.rod_diameter(design), self.factors(design)
+        result = function(self._vector(design), rod, self.data, self.load_limit, factors)
+        return result.full().ravel(order="F").tolist()
+
+    # the scaled variables
+
+    def scaled(self, design: Mapping[str, float]) -> np.ndarray:
+        """Scaled variables of a design, the rod sized a little above its limits (estimated, if they are simulated)."""
+        rod = float(self._rod(self._vector(design), self.data, self.load_limit, ESTIMATED).full().max())
+        full = {**design, ROD: 1.02 * rod}
+        return np.array([v.scale(full[v.name]) for v in self.variables])
+
+    def unscaled(self, x: Sequence[float]) -> dict[str, float]:
+        """Design of scaled variables (the rod left out)."""
+        return {v.name: v.unscale(float(xi)) for v, xi in zip(self.variables, x, strict=True) if v.name != ROD}
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds of the scaled variables."""
+        return (
+            np.array([v.scale(v.lower) for v in self.variables]),
+            np.array([v.scale(v.upper) for v in self.variables]),
+        )

@@ -1,0 +1,94 @@
+"""Feasible region of a study in the plane of two design variables, the others at the optimum; for drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..stability.screening import least_conditions, linear_decay, worst_abscissae_of
+from ..study.study import Study
+from .problem import DesignProblem
+
+__all__ = ["FeasibleRegion", "feasible_region"]
+
+
+PER_CYCLE = 64  # times in a cycle of the slowest mode: a yaw mode of four times its frequency is still a curve
+
+
+@dataclass(frozen=True)
+class FeasibleRegion:
+    """Maps over a plane of two design variables.
+
+    Attributes
+    ----------
+    x_name, y_name : str
+        Design variables of the axes.
+    x, y : ndarray
+        (m,), (k,) their values [SI].
+    mass : ndarray
+        (k, m) [kg].
+    stability : ndarray
+        (k, m) least stability condition over the speeds and loads looked at, scaled; > 0 where the margin holds.
+    violated : dict of str to ndarray
+        Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
+    design : dict
+        The design that the plane passes through.
+    """
+
+    x_name: str
+    y_name: str
+    x: np.ndarray
+    y: np.ndarray
+    mass: np.ndarray
+    stability: np.ndarray
+    violated: dict[str, np.ndarray]
+    design: dict[str, float]
+
+    @property
+    def feasible(self) -> np.ndarray:
+        """(k, m) bool: stable and no constraint violated."""
+        return (self.stability > 0) & ~np.any([row > 1e-9 for row in self.violated.values()], axis=0)
+
+
+def feasible_region(
+    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 101
+) -> FeasibleRegion:
+    """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping
+        Design in the plane [SI]; the axes reach a factor of 10 to each side of it.
+    worst : list of (speed, load)
+        Points of the envelope to look at besides 24 speeds at each load.
+    points : int
+        Grid points per axis.
+
+    Returns
+    -------
+    FeasibleRegion
+        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear without compliances.
+    """
+    problem = DesignProblem(study)
+    names = problem.design_names
+    x_name, y_name = names[0], names[1]
+    x, y = (design[name] * np.geomspace(0.1, 10, points) for name in (x_name, y_name))
+    X, Y = np.meshgrid(x, y)
+    designs = np.tile([design[name] for name in names], (X.size, 1))
+    designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
+    found = problem.over_designs(designs, problem.factors(design))
+    k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
+    if study.damper.link_stiffness is None and study.damper.series_stiffness is None:
+        stability = least_conditions(study, k_psi, c_psi, worst)
+    else:
+        stability = -study.required.stability_margin - worst_abscissae_of(study, designs, worst)
+    rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
+    decay = study.required.decay
+    if decay is not None:
+        ratio = np.full(X.size, np.inf)
+        ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
+        rows["decay_ratio"] = np.log(ratio / decay.ratio).reshape(X.shape)
+    return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))

@@ -1,0 +1,145 @@
+"""Numerical checks of a design, independent of problem and solver: true eigenvalues, and exact simulations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..motion.exact import ExactSimulator
+from ..motion.measure import PEAKS, decay, latest_count, loads_of
+from ..motion.trajectory import Trajectory
+from ..results import DecayCheck, OperatingPoint
+from ..stability.linear import linear_gear
+from ..study.study import Study
+
+__all__ = ["GridCheck", "check_decay", "check_grid"]
+
+PER_CYCLE = 64
+"""Output points in a cycle of the fastest mode."""
+
+MORE_CYCLES = 3
+"""Cycles that are simulated beyond those counted."""
+
+TOLERANCE = 1e-9
+"""Of the exact simulation, relative."""
+
+
+@dataclass(frozen=True)
+class GridCheck:
+    """Outcome of `check_grid`.
+
+    Attributes
+    ----------
+    passed : bool
+        No eigenvalue on the grid lies right of -margin.
+    speeds, loads : int
+        Size of the grid.
+    worst : OperatingPoint
+        Where the spectral abscissa is largest.
+    """
+
+    passed: bool
+    speeds: int
+    loads: int
+    worst: OperatingPoint
+
+
+def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
+    """Eigenvalues (`numpy.linalg.eigvals`) at `solver.verification_speeds` speeds and every load.
+
+    Parameters
+    ----------
+    study : Study
+        With requirements.
+    design : mapping
+        Design variables by name [SI].
+
+    Returns
+    -------
+    GridCheck
+        A load range is sampled at 21 loads; half of the speeds are spaced evenly, half geometrically.
+    """
+    envelope, count = study.envelope, study.solver.verification_speeds
+    low, high = envelope.speed.min, envelope.speed.max
+    speeds = np.union1d(np.linspace(low, high, count // 2 + 1), np.geomspace(low, high, count // 2 + 1))
+    speeds = np.clip(speeds, low, high)
+    loads = np.linspace(envelope.loads[0], envelope.loads[-1], 21) if envelope.load_is_range else np.array(envelope.loads)
+    V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
+    abscissa = linear_gear(study, design).abscissa(V, F_z)
+    top = int(abscissa.argmax())
+    worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
+    return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)
+
+
+def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tuple[float, float]] = ()) -> DecayCheck:
+    """Decay by exact simulation, on twice as many speeds as the optimiser has looked at, and refined at the worst.
+
+    Parameters
+    ----------
+    study : Study
+        With a decay requirement.
+    design : mapping
+        Design variables by name [SI].
+    points : sequence of (speed, load)
+        Where to look besides [m/s], [N].
+
+    Returns
+    -------
+    DecayCheck
+        With `optimised` equal to `ratio`, for the caller to fill.
+    """
+    required, envelope = study.required.decay, study.envelope
+    assert required is not None
+    simulator, made = ExactSimulator(study, design), 0
+
+    peaks = dict.fromkeys(PEAKS, 0.0)
+
+    def ratio(speed: float, load: float) -> float:
+        nonlocal made
+        made += 1
+        found, motion = _exact_ratio(simulator, speed, load)
+        for name in PEAKS:
+            peaks[name] = max(peaks[name], float(np.abs(motion[name]).max()))
+        return found
+
+    low, high = envelope.speed.min, envelope.speed.max
+    if required.speeds is not None:
+        speeds = np.array(required.speeds)
+    else:
+        speeds = np.unique(np.clip(np.geomspace(low, high, 2 * study.solver.decay_speeds), low, high))
+    grid = [(float(V), load) for load in loads_of(study) for V in speeds] + list(points)
+    found = {point: ratio(*point) for point in grid}
+    (speed, load), largest = max(found.items(), key=lambda item: item[1])
+    if required.speeds is None and low < high and largest < math.inf:
+        around = [V for V, _ in found if speed != V]
+        bounds = max([low, *(V for V in around if speed > V)]), min([high, *(V for V in around if speed < V)])
+        best = minimize_scalar(
+            lambda V: -ratio(float(V), load), bounds=bounds, method="bounded", options={"xatol": 1e-4 * high, "maxiter": 8}
+        )
+        speed, largest = max((speed, largest), (float(best.x), -float(best.fun)), key=lambda pair: pair[1])
+    kept = largest <= required.ratio
+    return DecayCheck(kept, required.ratio, required.cycles, speed, load, largest, largest, made, peaks)
+
+
+def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[float, Trajectory]:
+    """Decay ratio at one speed and load, infinite where the motion leaves the validity of the model, and the motion."""
+    required = simulator.study.required.decay
+    assert required is not None
+    A = simulator.gear.matrices(speed, load)[0]
+    rates = np.abs(np.linalg.eigvals(A).imag)
+    slowest = min([math.sqrt(max(-A[1, 0], 1.0)), *rates[rates > 1.0]])
+    latest = latest_count(A, required.cycles)
+    duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest
+    while True:
+        points = math.ceil(duration * max(rates.max(), 20.0) / (2 * math.pi) * PER_CYCLE)
+        motion = simulator(speed, load, required.disturbance, duration, TOLERANCE, points)
+        if motion.status == "stopped":
+            return math.inf, motion
+        found = decay(motion.time, motion["yaw_angle"], motion["yaw_rate"], required.cycles, latest)
+        if found is not None:
+            return found.ratio, motion
+        duration *= 2

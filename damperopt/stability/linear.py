@@ -1,0 +1,133 @@
+"""Linear model of a gear: state matrices at any speed and load, spectral abscissa."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..dynamics import build
+from ..errors import ConfigError
+from ..expressions.dae import DAE
+from ..study.study import Study
+from ..symbols import data_values, symbolic
+
+__all__ = ["LinearGear", "LinearModel", "linear_gear", "linearise", "spectral_abscissa"]
+
+
+def linearise(dae: DAE) -> ca.Function:
+    """State matrix at the equilibrium x = 0, by automatic differentiation.
+
+    Parameters
+    ----------
+    dae : DAE
+
+    Returns
+    -------
+    casadi.Function
+        (design, speed, load, data) -> (n, n) matrix f_x - f_z g_z^-1 g_x.
+    """
+    at_rest = ca.vertcat(dae.x, dae.z), ca.vertcat(ca.SX.zeros(dae.x.shape), dae.rest)
+    f_x, f_z, g_x, g_z = (
+        ca.substitute(ca.jacobian(f, v), *at_rest) for f, v in itertools.product((dae.ode, dae.alg), (dae.x, dae.z))
+    )
+    A = ca.densify(f_x - f_z @ ca.inv_minor(g_z) @ g_x if dae.z.numel() else f_x)
+    return ca.Function("state_matrix", [dae.design, dae.speed, dae.load, dae.data], [A])
+
+
+@dataclass(frozen=True)
+class LinearGear:
+    """State matrices of one gear with one design.
+
+    Attributes
+    ----------
+    matrices : callable
+        (speeds, loads), each (m,) or scalar [m/s], [N] -> (m, n, n) state matrices.
+    state_names : tuple of str
+        Names of the n states.
+    """
+
+    matrices: Callable[[Any, Any], np.ndarray]
+    state_names: tuple[str, ...]
+
+    def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
+        """Spectral abscissa [1/s], (m,)."""
+        return spectral_abscissa(self.matrices(speeds, loads))
+
+
+class LinearModel:
+    """Linear model of a study, built once; `at(design)` gives the gear with a design.
+
+    Parameters
+    ----------
+    study : Study
+    """
+
+    def __init__(self, study: Study):
+        dae = build(symbolic(study))
+        self.state_names = dae.state_names
+        self.design_names = dae.design_names
+        self.state_matrix = linearise(dae)
+        self._data = ca.DM(data_values(study))
+
+    def at(self, design: Mapping[str, float]) -> LinearGear:
+        """The gear with `design` (design variables by name, SI); `ConfigError` if one is missing or not positive."""
+        n = len(self.state_names)
+        wrong = [name for name in self.design_names if not 0 < design.get(name, np.nan) < np.inf]
+        if wrong:
+            raise ConfigError(
+                f"design.{wrong[0]}: found {design.get(wrong[0], 'nothing')}; "
+                f"allowed: positive finite {', '.join(self.design_names)}"
+            )
+        values = ca.DM([design[name] for name in self.design_names])
+
+        def matrices(speeds: Any, loads: Any) -> np.ndarray:
+            V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
+            columns = self.state_matrix(ca.repmat(values, 1, V.size), V.reshape(1, -1), F_z.reshape(1, -1), self._data)
+            return columns.full().reshape(n, V.size, n).transpose(1, 0, 2)
+
+        return LinearGear(matrices, self.state_names)
+
+
+def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> LinearGear:
+    """Linear model of a study with a design.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping or None
+        Design variables [SI]; None: the starts of the study.
+
+    Returns
+    -------
+    LinearGear
+    """
+    model = LinearModel(study)
+    if design is None:
+        design = study.start
+    return model.at(design)
+
+
+def spectral_abscissa(A: np.ndarray) -> np.ndarray:
+    """Largest real part of the eigenvalues of stacked matrices.
+
+    Parameters
+    ----------
+    A : ndarray
+        (..., n, n) [1/s]
+
+    Returns
+    -------
+    ndarray
+        (...) [1/s]
+
+    Examples
+    --------
+    >>> float(spectral_abscissa(np.array([[0.0, 1.0], [-4.0, -0.6]])).round(6))
+    -0.3
+    """
+    return np.linalg.eigvals(A).real.max(axis=-1)

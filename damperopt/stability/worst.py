@@ -1,0 +1,148 @@
+"""Worst points of an envelope: the speeds and loads at which the spectral abscissa is largest."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import maximum_filter
+from scipy.optimize import minimize, minimize_scalar
+
+from ..results import OperatingPoint
+from ..study.study import Envelope
+from .critical import crossing_loads, crossing_speeds, speed_polynomials
+from .linear import LinearGear
+
+__all__ = ["worst_points"]
+
+LOADS = 9
+"""Loads of the first look at a load range, spaced evenly, and as many spaced geometrically."""
+
+LINES = 7
+"""Lines of constant speed along which a load range is searched exactly."""
+
+
+def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, samples: int = 40) -> list[OperatingPoint]:
+    """Local maxima of the spectral abscissa over the envelope, the global one first.
+
+    Parameters
+    ----------
+    gear : LinearGear
+    envelope : Envelope
+    enough : float
+        Over a load range: if its ends show an abscissa above this, their maxima are returned without looking between.
+    samples : int
+        Speeds of the first look; the result does not hang on it, see Notes.
+
+    Returns
+    -------
+    list of OperatingPoint
+        Descending in abscissa.
+
+    Notes
+    -----
+    At each load the maximum over speed is global: beyond the refined samples, the polynomials a_n(V) and H_(n-1)(V),
+    shifted to the level found, show whether any speed lies above it; if one does, it is refined in turn (level-set
+    method, as for the H-infinity norm). Over a load range that holds at both ends; between them the peaks of a grid are
+    refined, which is no proof: `certify` is.
+    """
+    points = [point for load in envelope.loads for point in _worst_at_load(gear, envelope, load, samples)]
+    if envelope.load_is_range and max(p.abscissa for p in points) <= enough:
+        points += _worst_between_loads(gear, envelope, samples)
+    return sorted(points, key=lambda point: -point.abscissa)
+
+
+def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> list[OperatingPoint]:
+    """Peaks of the abscissa over the rectangle of speeds and loads.
+
+    Refined peaks of a grid first; then lines of constant speed, along which the abscissa's crossings of the level found are
+    again zeros of polynomials, now in the load: a ridge that lies between the loads of the grid is found where it cuts one.
+    Last, the load of the best point is refined with the exact maximum over speed.
+    """
+    (low, high), (light, heavy) = (envelope.speed.min, envelope.speed.max), envelope.loads[:2]
+    speeds = np.unique(np.clip(np.geomspace(low, high, samples), low, high))
+    loads = np.union1d(np.linspace(light, heavy, LOADS), np.geomspace(light, heavy, LOADS))
+    V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
+    height = gear.abscissa(V, F_z).reshape(len(loads), len(speeds))
+    found = []
+    for i, j in np.argwhere(height >= maximum_filter(height, 3, mode="nearest")):
+        box = [
+            (speeds[max(j - 1, 0)], speeds[min(j + 1, len(speeds) - 1)]),
+            (loads[max(i - 1, 0)], loads[min(i + 1, len(loads) - 1)]),
+        ]
+        found.append(_refined_in_box(gear, (speeds[j], loads[i]), box))
+
+    for speed in (max(found, key=lambda p: p.abscissa).speed, *np.unique(np.clip(np.geomspace(low, high, LINES), low, high))):
+        level = max(p.abscissa for p in found)
+        ends = np.concatenate([[light], crossing_loads(gear, speed, level + 1e-9 * (1 + abs(level)), light, heavy), [heavy]])
+        middles = (ends[1:] + ends[:-1]) / 2
+        for i in np.flatnonzero(gear.abscissa(speed, middles) > level + 1e-9 * (1 + abs(level))):
+            box = [(low, high), (ends[i], ends[i + 1])]
+            found.append(_refined_in_box(gear, (speed, middles[i]), box))
+            found += _worst_at_load(gear, envelope, found[-1].load, samples)
+    # along an oblique ridge: the maximum over speed, exact at each load, as a function of the load
+    top = max(found, key=lambda p: p.abscissa).load
+    left, right = int(np.searchsorted(loads, top)), int(np.searchsorted(loads, top, "right"))
+    bracket = loads[max(left - 1, 0)], loads[min(right, len(loads) - 1)]
+    ridge = minimize_scalar(
+        lambda load: -_worst_at_load(gear, envelope, load, samples)[0].abscissa,
+        bounds=bracket,
+        method="bounded",
+        options={"xatol": 1e-8 * heavy, "maxiter": 60},
+    )
+    return found + _worst_at_load(gear, envelope, float(ridge.x), samples)
+
+
+def _refined_in_box(gear: LinearGear, start: tuple[float, float], box: list[tuple[float, float]]) -> OperatingPoint:
+    """Local maximum of the abscissa from a start within a box of speed and load."""
+    low = np.array([edge[0] for edge in box])
+    width = np.array([edge[1] - edge[0] for edge in box])
+
+    def point(u: np.ndarray) -> OperatingPoint:
+        speed, load = np.clip(low + u * width, [e[0] for e in box], [e[1] for e in box])
+        return OperatingPoint(float(speed), float(load), float(gear.abscissa(speed, load)[0]))
+
+    first = np.where(width > 0, (np.array(start) - low) / np.where(width > 0, width, 1), 0.0)
+    best = minimize(
+        lambda u: -point(u).abscissa,
+        first,
+        method="Nelder-Mead",
+        bounds=[(0.0, float(w > 0)) for w in width],
+        options={"xatol": 1e-7, "fatol": 1e-11, "maxfev": 400},
+    )
+    return max(point(first), point(best.x), key=lambda p: p.abscissa)
+
+
+def _peaks(height: np.ndarray) -> list[int]:
+    """Indices of the local maxima of a sequence, its ends included."""
+    return [i for i in range(len(height)) if height[i] >= height[max(i - 1, 0) : i + 2].max()]
+
+
+def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: int) -> list[OperatingPoint]:
+    low, high = envelope.speed.min, envelope.speed.max
+
+    def point(speed: float) -> OperatingPoint:
+        return OperatingPoint(float(speed), float(load), float(gear.abscissa(speed, load)[0]))
+
+    def refined(left: float, right: float) -> OperatingPoint:
+        best = minimize_scalar(
+            lambda V: -gear.abscissa(V, load)[0], bounds=(left, right), method="bounded", options={"xatol": 1e-8 * right}
+        )
+        return max(point(best.x), point(left), point(right), key=lambda p: p.abscissa)
+
+    if low == high:
+        return [point(low)]
+    speeds = np.geomspace(low, high, samples)
+    speeds[0], speeds[-1] = low, high
+    height = gear.abscissa(speeds, load)
+    found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
+
+    polynomials = speed_polynomials(gear, load, high)
+    for _ in range(20):
+        best = max(p.abscissa for p in found)
+        level = best + 1e-9 * (1 + abs(best))
+        ends = np.concatenate([[low], crossing_speeds(polynomials, high, level, low, high), [high]])
+        middles = (ends[1:] + ends[:-1]) / 2
+        above = [i for i, V in enumerate(middles) if gear.abscissa(V, load)[0] > level]
+        if not above:
+            break
+        found += [refined(ends[i], ends[i + 1]) for i in above]
+    return sorted(found, key=lambda p: -p.abscissa)

@@ -87,6 +87,11 @@ class Gear(Record):
         e, phi, R_w = self.caster_length, self.rake_angle, self.wheel_radius
         return e * cos(phi) + (R_w + e * sin(phi)) * tan(phi)
 
+    @property
+    def order(self) -> int:
+        """Of the linear gear with a string tyre of one state, as the field counts it."""
+        return len(self.STATES) + 1
+
     def attachments(self, x: Names) -> dict[str, Attachment]:
         """Where linkages act: ``damper`` between piston and strut."""
         return {"damper": Attachment(x["yaw_angle"], x["yaw_rate"])}

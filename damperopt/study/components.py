@@ -6,9 +6,9 @@ from functools import cache
 from typing import Any
 
 from ..gears.base import Gear
-from ..linkages.assembly import assembly_type, dampers, layouts
+from ..linkages.assembly import assemblies, assembly_type, dampers, layouts
 from ..linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS
-from ..quantities.kinds import kinds, one_of
+from ..quantities.kinds import kinds, one_of, tags_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from ..tyres.assembly import contact_lines, slip_laws, tyre_type
@@ -64,7 +64,8 @@ def rooms() -> dict[str, dict[str, type[Any]]]:
 
 def optimisable() -> tuple[str, ...]:
     """Layouts that have design variables; the others can be analysed, and simulated."""
-    return tuple(name for name, layout in layouts().items() if layout.VARIABLES)
+    with_variables = (kind.LAYOUT for kind in assemblies().values() if kind.VARIABLES)
+    return tuple(dict.fromkeys(tags_of(layout, "topology")[0] for layout in with_variables))
 
 
 @cache

@@ -16,7 +16,7 @@ from ..errors import ConfigError
 from ..quantities.named import DesignVariable
 from ..quantities.record import Record, quantity_of, refuse
 from ..strength.materials import Material
-from .components import DAMPER, GEAR, TYRE, optimisable
+from .components import DAMPER, GEAR, TYRE
 from .envelope import Envelope
 from .mass_model import MassModel
 from .requirements import Requirements
@@ -71,7 +71,7 @@ class Study(Record):
     @property
     def variables(self) -> tuple[DesignVariable, ...]:
         """Design variables of damper and layout, in the order of every table and file."""
-        variables: tuple[DesignVariable, ...] = self.damper.VARIABLES if self.damper.topology in optimisable() else ()
+        variables: tuple[DesignVariable, ...] = self.damper.VARIABLES
         return variables
 
     @property

@@ -7,8 +7,9 @@ from typing import Annotated, Any, Self
 from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from ..quantities.record import Density, Record, Stress, refuse
+from ..quantities.record import Density, Name, Record, Stress, refuse
 from ..quantities.units import Quantity
+from ..reading import quoted
 
 __all__ = ["MATERIALS", "Material"]
 
@@ -53,7 +54,7 @@ class Material(Record):
     Metals carry `yield_strength`; a laminate carries `design_strain` instead, and its allowable is E times that strain.
     """
 
-    name: str = "custom"
+    name: Name = "custom"
     youngs_modulus: Stress
     density: Density
     yield_strength: Stress | None = None
@@ -67,7 +68,7 @@ class Material(Record):
     def _named(cls, data: Any) -> Any:
         if isinstance(data, str):
             if data not in MATERIALS:
-                raise refuse("", f"'{data}' is no known material", ", ".join(MATERIALS) + ", or the numbers as a mapping")
+                raise refuse("", f"{quoted(data)} is no known material", ", ".join(MATERIALS) + ", or the numbers as a mapping")
             return {"name": data, **MATERIALS[data]}
         return data
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import fractions
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
@@ -23,20 +23,24 @@ from ..quantities.record import (
     refuse,
 )
 from ..quantities.units import Quantity
+from ..reading import quoted
 from ..strength.materials import Material
 from .disturbances import Disturbance, Kick, Release
 
 __all__ = ["DecayRequirement", "Fatigue", "MassModel", "Requirements", "Section"]
 
 
+_FRACTION = re.compile(r"\s*([0-9]{1,9})\s*/\s*([0-9]{1,9})\s*")
+
+
 def _fraction(found: Any) -> Any:
     """1/3 as a number; everything else as it is."""
     if not isinstance(found, str) or "/" not in found:
         return found
-    try:
-        return float(fractions.Fraction(found.replace(" ", "")))
-    except (ValueError, ZeroDivisionError):
-        raise refuse("", f"'{found}' is no fraction", "a number such as 0.3, or a fraction such as 1/3") from None
+    parts = _FRACTION.fullmatch(found)
+    if not parts or not int(parts[2]):
+        raise refuse("", f"{quoted(found)} is no fraction", "a number such as 0.3, or a fraction such as 1/3")
+    return int(parts[1]) / int(parts[2])
 
 
 _Ratio = Annotated[
@@ -47,7 +51,7 @@ _Ratio = Annotated[
         {
             "anyOf": [
                 {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-                {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*0*[1-9][0-9]*\s*$"},
+                {"type": "string", "pattern": r"^\s*[0-9]{1,9}\s*/\s*0*[1-9][0-9]{0,8}\s*$"},
             ]
         }
     ),

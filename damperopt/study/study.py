@@ -21,6 +21,7 @@ from ..quantities.record import (
     Inertia,
     Length,
     LoadRange,
+    Name,
     Record,
     SeriesStiffness,
     SpeedRange,
@@ -31,6 +32,7 @@ from ..quantities.record import (
 )
 from ..quantities.units import Quantity
 from ..strength.materials import Material
+from .changes import changed
 from .requirements import MassModel, Requirements
 from .variables import DESIGN_VARIABLES, TOPOLOGIES, Design, Solver, Variable
 
@@ -211,7 +213,7 @@ class Envelope(Record):
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
 
-    name: str
+    name: Name
     gear: Gear
     tyre: Tyre
     damper: Damper
@@ -291,15 +293,7 @@ class Study(Record):
         ConfigError
             If a key does not exist or the new study is not valid.
         """
-        data = self.model_dump()
-        for path, value in changes.items():
-            *parents, leaf = path.split("__")
-            block = data
-            for key in parents:
-                if block.get(key) is None:
-                    block[key] = {}
-                block = block[key]
-            block[leaf] = value.model_dump() if isinstance(value, BaseModel) else value
+        data = changed(self.model_dump(), {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)
         except ValidationError as error:

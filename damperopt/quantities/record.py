@@ -49,7 +49,7 @@ Speed = Annotated[
     float,
     Quantity(
         "m/s",
-        above=0,
+        at_least=1e-3,
         at_most=1e4,
         example="120 kt",
         hint="a wheel at rest does not shimmy, and terms with 1/V have no value there; start taxiing at a small speed, such as 1 kt",

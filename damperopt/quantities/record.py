@@ -57,6 +57,7 @@ Speed = Annotated[
 ]
 Time = Annotated[float, Quantity("s", above=0, example="3 s")]
 Stress = Annotated[float, Quantity("Pa", above=0, example="200 GPa")]
+Pressure = Annotated[float, Quantity("Pa", above=0, example="160 psi")]
 Density = Annotated[float, Quantity("kg/m^3", above=0, example="7850 kg/m^3")]
 Damping = Annotated[float, Quantity("N s/m", above=0, example="1e4 N s/m")]
 Stiffness = Annotated[float, Quantity("N/m", above=0, example="4 MN/m")]

@@ -78,7 +78,9 @@ class Range(Record):
     """A closed interval; `min` below `max`."""
 
     min: float
+    """Lower end, included."""
     max: float
+    """Upper end, included."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

@@ -227,9 +227,10 @@ class Quantity:
             if limit is not None:
                 plain[keyword] = limit
         if self.unit == "1":
-            return plain | {"$comment": self.describe()}
+            parts = {"type": "string", "pattern": r"^\s*[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*(?:%|percent|ppm)\s*$"}
+            return {"anyOf": [plain, parts], "$comment": self.describe()}
         text = {"type": "string", "pattern": text_pattern(self.unit)}
-        return {"anyOf": [plain, text], "$comment": f"[{self.unit}] {self.describe()}"}
+        return {"anyOf": [plain, text], "$comment": self.describe()}
 
     def _number(self, found: Any) -> float:
         if isinstance(found, bool) or not isinstance(found, (int, float, str)):

@@ -55,13 +55,21 @@ class Material(Record):
     """
 
     name: Name = "custom"
+    """Of the material, for tables."""
     youngs_modulus: Stress
+    """E [Pa]."""
     density: Density
+    """Mass per volume [kg/m^3]."""
     yield_strength: Stress | None = None
+    """Of a metal [Pa]."""
     ultimate_strength: Stress | None = None
+    """Of a metal, at rupture [Pa]."""
     design_strain: Annotated[float, Quantity("1", above=0, below=0.1)] | None = None
+    """Of a laminate: its allowable stress is E times this [1]."""
     fatigue_strength_coefficient: Stress | None = None
+    """sigma_f' of Basquin's law [Pa]."""
     fatigue_exponent: Annotated[float, Quantity("1", above=-1, below=0)] | None = None
+    """b of Basquin's law, negative [1]."""
 
     @model_validator(mode="before")
     @classmethod

@@ -12,10 +12,12 @@ from pydantic import BaseModel, ValidationError
 from ..errors import ConfigError
 from ..quantities.record import quantity_of
 from ..reading import printable, quoted, text_of
+from . import schema
+from .components import gears
 from .document import dotted, read
 from .study import Study
 
-__all__ = ["json_schema", "load", "loads", "parsed", "text_of"]
+__all__ = ["is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
 
 Record = TypeVar("Record", bound=BaseModel)
 
@@ -62,6 +64,12 @@ def loads(text: str, name: str = "<text>") -> Study:
     return parsed(text, name, Study)[0]
 
 
+def is_sweep(text: str, name: str) -> bool:
+    """Whether a text describes a sweep: a base that is varied."""
+    keys = read(text, name, "keys of a study or a sweep").data
+    return "base" in keys and not {"gear", "tyre", "damper"} & set(keys)
+
+
 def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tuple, int]]:
     """A record of any class from YAML text, and the line of every key path in it.
 
@@ -99,8 +107,17 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema of a configuration file, for editors."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Study.model_json_schema()}
+    """JSON Schema of a study, for editors."""
+    found = schema.json_schema(Study)
+    for kind in gears().values():
+        # older studies name a gear by its order
+        order = kind.ORDER if kind.EXTENDS is None else gears()[kind.EXTENDS[0]].ORDER
+        block = found["$defs"].get(kind.__name__)
+        if order is not None and block is not None:
+            block["properties"]["order"] = {"const": order, "description": f"An older name of this kind, or kind: {kind.__name__}."}
+            block["required"].remove("kind")
+            block["anyOf"] = [{"required": ["kind"]}, {"required": ["order"]}]
+    return found
 
 
 def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model: type[BaseModel]) -> tuple[int, str]:

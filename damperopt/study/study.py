@@ -31,15 +31,25 @@ class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
 
     name: Name
+    """Of the study; folders and figures carry it."""
     gear: GEAR
+    """What moves: inertias, lengths, bending."""
     tyre: TYRE
+    """How the ground acts on the wheel: a slip law and a contact line."""
     damper: DAMPER
+    """Layout of the shimmy damper, and its kind."""
     material: Material = Material.model_validate("AISI 4340")
+    """Of links, bending arm and support arm: a name of the library, or the numbers."""
     envelope: Envelope
+    """Speeds and loads at which the requirements hold."""
     requirements: Requirements | None = None
+    """What a design must meet; needed where there is something to design."""
     design: Design = Design()
+    """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()
+    """Numbers of the mass model."""
     solver: Solver = Solver()
+    """Numbers of the solution method."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import reprlib
 import stat
+import unicodedata
 from pathlib import Path
 from typing import Any
 
 from .errors import ConfigError
 
-__all__ = ["MOST_RESULT_BYTES", "MOST_STUDY_BYTES", "printable", "quoted", "text_of"]
+__all__ = ["MOST_RESULT_BYTES", "MOST_STUDY_BYTES", "code_point", "printable", "quoted", "text_of", "unprintable"]
 
 MOST_STUDY_BYTES = 256 * 1024
 """Of a study or a sweep; the largest in use have 10 kB, and YAML is read at some 100 kB/s."""
@@ -64,6 +65,23 @@ def printable(name: object) -> str:
     text = str(name)
     shown = text if len(text) <= 4 * _QUOTED else f"{text[:_QUOTED]}... ({len(text)} characters)"
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in shown)
+
+
+def unprintable(text: str) -> str:
+    """What in a text cannot be shown: control characters, line breaks, halves of a pair, marks that turn the direction of
+    reading; in words, empty where there is nothing of the kind.
+    """
+    return next((f"the character {code_point(c)}" for c in text if _cannot_be_shown(c)), "")
+
+
+def _cannot_be_shown(letter: str) -> bool:
+    turns = unicodedata.bidirectional(letter) in ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
+    return turns or unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp")
+
+
+def code_point(character: int | str) -> str:
+    """A character by its number, such as U+001B."""
+    return f"U+{character if isinstance(character, int) else ord(character):04X}"
 
 
 def text_of(path: str | Path, kind: str = "a readable YAML file", most_bytes: int = MOST_STUDY_BYTES) -> str:

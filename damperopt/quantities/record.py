@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, StringConstraints, model_validator
 from pydantic_core import PydanticCustomError
 
-from ..reading import quoted
+from ..reading import quoted, unprintable
 from .units import Quantity
 
 __all__ = ["LengthRange", "LoadRange", "Name", "Range", "Record", "SpeedRange", "quantity_of", "refuse"]
@@ -27,8 +26,8 @@ def refuse(key: str, what: str, allowed: str) -> PydanticCustomError:
 
 def _of_characters(text: str) -> str:
     """Names come back in files, figures and terminals: no control characters, no half of a character pair."""
-    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
-        raise refuse("", f"{quoted(text)} holds a character that cannot be printed", "printable text")
+    if words := unprintable(text):
+        raise refuse("", f"{quoted(text)} holds {words}", "printable text")
     return text
 
 
@@ -52,7 +51,7 @@ Speed = Annotated[
         at_least=1e-3,
         at_most=1e4,
         example="120 kt",
-        hint="a wheel at rest does not shimmy, and terms with 1/V have no value there; start taxiing at a small speed, such as 1 kt",
+        hint="a wheel at rest does not shimmy, and 1/V has no value there; begin to taxi at a small speed, such as 1 kt",
     ),
 ]
 Time = Annotated[float, Quantity("s", above=0, example="3 s")]

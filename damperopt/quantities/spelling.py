@@ -34,7 +34,7 @@ _FORCE, _LENGTH = "(?:(?:da|[kMGm])?N|k?lbf|kgf|kip)", "(?:[mc]?m|in|ft)"
 _GLUED = (
     (re.compile(rf"({_FORCE})({_LENGTH})(s?)"), r"\1 \2 \3"),
     (re.compile(rf"({_FORCE})(s)"), r"\1 \2"),
-    (re.compile(rf"(in|ft)(lbf|lbs|lb)()"), r"\1 \2 \3"),
+    (re.compile(r"(in|ft)(lbf|lbs|lb)()"), r"\1 \2 \3"),
     (re.compile(r"(lbf|lb)(in|ft)()"), r"\1 \2 \3"),
     (re.compile(r"(kg|slug)([mc]?m|in|ft)()"), r"\1 \2 \3"),
 )
@@ -65,7 +65,7 @@ def spellings(unit_text: str) -> list[str]:
     text = _SIGNS.sub(" ", unit_text.replace("**", "^").translate(_EXPONENTS).replace("^^", "^"))
     text = re.sub(r"\bper\b", "/", text).strip(" .")
     text = re.sub(r"\b(kip|deg)s\b", r"\1", "1" + text if text.startswith("/") else text)
-    text = re.sub(rf"(?<=[A-Za-z])\s*[-.]\s*(?=[A-Za-zµμ°])", " ", text)  # N-m, N.m
+    text = re.sub(r"(?<=[A-Za-z])\s*[-.]\s*(?=[A-Za-zµμ°])", " ", text)  # N-m, N.m
     text = re.sub(r"(?<=[A-Za-z])(-?[1-9])", r"^\1", text)  # kg/m3, s-1
     text = re.sub(r"[A-Za-z]+", _taken_apart, text)
     if not re.fullmatch(r"(?:1\s*/\s*)?[u()/\s]*u[u()/\s]*", re.sub(r"\)\s*\^\s*-?[1-9](?!\d)", ")", _POWER.sub("u", text))):

@@ -46,14 +46,17 @@ _ANY_SIZE = (1e-15, 1e15)
 _DECIMALS = Context(prec=40, traps=[])
 
 _FRAGMENTS = (
-    (re.compile(r"[-+]?[0-9]+(?:[,'\u2019 ][0-9]{3})+(?:\.[0-9]*)?(?![0-9]).*"), "write the number without separators, as 12000.5"),
+    (
+        re.compile(r"[-+]?[0-9]+(?:[,'\u2019 ][0-9]{3})+(?:\.[0-9]*)?(?![0-9]).*"),
+        "write the number without separators, as 12000.5",
+    ),
     (re.compile(r"[-+]?[0-9]+,[0-9]+.*"), "write the decimal sign as a point, as in 9.5"),
     (re.compile(r"[-+]?0[0-9].*"), "write the number without leading zeros: to some readers 010 is 8"),
     (re.compile(r"[-+]?0[xXbBoO][0-9a-fA-F]+.*"), "write the number in decimal digits"),
     (re.compile(r"[-+]?[0-9][0-9_]*_[0-9].*"), "write the number without underscores"),
     (re.compile(r"[-+]?[0-9]+:[0-9].*"), "write the number in decimal digits: to some readers 1:30 is 90"),
     (re.compile(r"[\u2010-\u2015\u2212].*"), "write the sign as -"),
-    (re.compile(r".*[^\W\d_]?\d.*"), "digits are 0 to 9"),
+    (re.compile(r".*(?=\d)[^0-9].*"), "digits are 0 to 9"),
 )
 """What looks like a number and is none, and what to do."""
 
@@ -209,7 +212,7 @@ class Quantity:
         )
         if not inside:
             self._refuse(f"{shown} is out of range" + (f" ({self.hint})" if self.hint else ""))
-        return value
+        return value + 0.0  # no negative zero
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
@@ -227,7 +230,10 @@ class Quantity:
             if limit is not None:
                 plain[keyword] = limit
         if self.unit == "1":
-            parts = {"type": "string", "pattern": r"^\s*[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*(?:%|percent|ppm)\s*$"}
+            parts = {
+                "type": "string",
+                "pattern": r"^\s*[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*(?:%|percent|ppm)\s*$",
+            }
             return {"anyOf": [plain, parts], "$comment": self.describe()}
         text = {"type": "string", "pattern": text_pattern(self.unit)}
         return {"anyOf": [plain, text], "$comment": self.describe()}
@@ -248,13 +254,16 @@ class Quantity:
         if len(text) > _LONGEST_NUMBER:
             self._refuse(f"{quoted(found)} has more digits than any measurement")
         if not unit:
-            self._refuse(f"{quoted(found)} is text without a unit (remove the quotes, or add the unit)" + self._about_digits(found))
+            self._refuse(
+                f"{quoted(found)} is text without a unit (remove the quotes, or add the unit)" + self._about_digits(found)
+            )
         if len(exponent.lstrip("+-0")) > 4:  # beyond any float; Decimal itself would refuse it
             self._refuse(f"{quoted(found)} is not a finite number" if exponent[0] != "-" else f"{quoted(found)} would become 0")
         factor = _factor(unit, self.unit) if len(unit) <= LONGEST else None
         if factor is None:
             self._refuse(
-                f"{quoted(found)} has the unit {quoted(unit)}, which is unknown or of another dimension" + (self._about_unit(unit) or self._about_digits(found))
+                f"{quoted(found)} has the unit {quoted(unit)}, which is unknown or of another dimension"
+                + (self._about_unit(unit) or self._about_digits(found))
             )
         value = _product(text, factor)
         if not value and re.search("[1-9]", match[2]):
@@ -264,8 +273,6 @@ class Quantity:
     def _about_digits(self, found: str) -> str:
         text = found.strip()[:100]
         advice_for = next((words for rule, words in _FRAGMENTS if rule.fullmatch(text) and not _NUMBER.fullmatch(text)), "")
-        if advice_for == "digits are 0 to 9" and text.isascii():
-            return ""
         return f" ({advice_for})" if advice_for else ""
 
     def _about_unit(self, unit: str) -> str:

@@ -47,7 +47,9 @@ def changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, An
             if inner is not None and not isinstance(inner, Mapping):
                 here = printable(".".join(parents[:depth]))
                 kind = "a list" if isinstance(inner, (list, tuple)) else quoted(inner)
-                raise ConfigError(f"{printable(path)}: {here} is {kind} and has no keys; allowed: a new value of {here} as a whole")
+                raise ConfigError(
+                    f"{printable(path)}: {here} is {kind} and has no keys; allowed: a new value of {here} as a whole"
+                )
             block[key] = dict(inner or {})
             block = block[key]
         block[leaf] = value.model_dump() if isinstance(value, BaseModel) else value

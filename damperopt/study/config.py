@@ -14,7 +14,7 @@ from ..quantities.record import quantity_of
 from ..reading import printable, quoted, text_of
 from . import schema
 from .components import gears
-from .document import dotted, read
+from .document import dotted, few, read
 from .study import Study
 
 __all__ = ["is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
@@ -103,7 +103,7 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
         return model.model_validate(data), lines
     except ValidationError as error:
         problems = [_message(problem, data, lines, name, model) for problem in error.errors(include_url=False)]
-        raise ConfigError([text for _, text in sorted(set(problems))]) from None
+        raise ConfigError(few([text for _, text in sorted(set(problems))])) from None
 
 
 def json_schema() -> dict[str, Any]:
@@ -114,7 +114,10 @@ def json_schema() -> dict[str, Any]:
         order = kind.ORDER if kind.EXTENDS is None else gears()[kind.EXTENDS[0]].ORDER
         block = found["$defs"].get(kind.__name__)
         if order is not None and block is not None:
-            block["properties"]["order"] = {"const": order, "description": f"An older name of this kind, or kind: {kind.__name__}."}
+            block["properties"]["order"] = {
+                "const": order,
+                "description": f"An older name of this kind, or kind: {kind.__name__}.",
+            }
             block["required"].remove("kind")
             block["anyOf"] = [{"required": ["kind"]}, {"required": ["order"]}]
     return found
@@ -122,7 +125,9 @@ def json_schema() -> dict[str, Any]:
 
 def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model: type[BaseModel]) -> tuple[int, str]:
     context = problem.get("ctx", {})
-    path = _path_in_file(problem["loc"], data, problem["type"] == "missing") + tuple(filter(None, context.get("key", "").split(".")))
+    path = _path_in_file(problem["loc"], data, problem["type"] == "missing") + tuple(
+        filter(None, context.get("key", "").split("."))
+    )
     known = path
     while known not in lines:
         known = known[:-1]
@@ -131,7 +136,7 @@ def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model:
 
 
 def _path_in_file(location: Sequence[Any], data: Any, missing: bool) -> tuple:
-    """Location without the union tags that pydantic inserts: what is not in the data is one, but for the key that is missing."""
+    """Location without the tags of unions that pydantic inserts: what is not in the data, but for a key that is missing."""
     path: list[Any] = []
     for position, step in enumerate(location):
         inside = isinstance(data, dict) and step in data

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,11 +10,12 @@ import yaml
 
 from ..errors import ConfigError
 from ..quantities.units import underflows
-from ..reading import printable, quoted
+from ..reading import code_point, printable, quoted, unprintable
 
-__all__ = ["Document", "dotted", "read"]
+__all__ = ["Document", "dotted", "few", "read"]
 
 DEEPEST = 32
+MOST_PROBLEMS = 30
 MOST_VALUES = 100_000
 LONGEST_TEXT = 1000
 LONGEST_NUMBER = 60
@@ -81,7 +81,7 @@ class Document:
 
 def dotted(path: tuple) -> str:
     """Key path as a message shows it."""
-    return ".".join(quoted(key) if isinstance(key, str) and len(key) > 60 else printable(key) for key in path) or "(file)"
+    return ".".join(quoted(key) if key == "" or len(str(key)) > 60 else printable(key) for key in path) or "(file)"
 
 
 def read(text: str, name: str, allowed: str) -> Document:
@@ -113,7 +113,7 @@ def read(text: str, name: str, allowed: str) -> Document:
         walk = _Walk(name)
         walk.visit(root, ())
         if walk.problems:
-            raise ConfigError(walk.problems)
+            raise ConfigError(few(walk.problems))
         return Document(loader.construct_document(root), walk.lines, walk.empty)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
@@ -122,7 +122,7 @@ def read(text: str, name: str, allowed: str) -> Document:
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise ConfigError(
-            f"{name}:{line}: not valid YAML: the character {_code(error.character)}; allowed: printable text"
+            f"{name}:{line}: not valid YAML: the character {code_point(error.character)}; allowed: printable text"
         ) from error
     except RecursionError as error:
         raise ConfigError(f"{name}:1: not valid YAML: blocks inside themselves") from error
@@ -194,6 +194,8 @@ class _Walk:
                 self.say(line, path, f"a number of {len(node.value)} characters; allowed: at most {LONGEST_NUMBER}")
             elif re.match("[-+.]*[0-9]", node.value) and underflows(node.value):
                 self.say(line, path, f"{quoted(node.value)} is too small for a number and would become 0; allowed: 0, or more")
+        elif node.tag == _TAG + "merge":
+            self.say(line, path, "'<<' is no value; allowed: it stands before a block that is merged")
         elif words := _unfit(node.value):
             self.say(line, path, f"text with {words}; allowed: printable text")
 
@@ -205,8 +207,10 @@ def _unfit(text: str) -> str:
     """Why text can be no name and no value, in words; empty if it can."""
     if len(text) > LONGEST_TEXT:
         return f"{len(text)} characters (at most {LONGEST_TEXT})"
-    return next((f"the character {_code(ord(c))}" for c in text if unicodedata.category(c) in ("Cc", "Cs")), "")
+    return unprintable(text)
 
 
-def _code(character: int | str) -> str:
-    return f"U+{character if isinstance(character, int) else ord(character):04X}"
+def few(problems: list[str]) -> list[str]:
+    """The first problems of a file; those behind them are often the same."""
+    rest = len(problems) - MOST_PROBLEMS
+    return problems if rest <= 0 else [*problems[:MOST_PROBLEMS], f"... and {rest} problems more"]

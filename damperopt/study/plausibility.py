@@ -79,17 +79,20 @@ def implausible_masses(parts: Mapping[str, float]) -> list[Implausible]:
 
 
 def _of_tyre(study: Study) -> Iterator[Implausible]:
-    tyre, gear = study.tyre, study.gear
-    for load in dict.fromkeys(study.envelope.loads):
-        side, moment, sigma, a = (float(value) for value in tyre.linear(load, tyre.pressure))
+    tyre, radius = study.tyre, study.gear.wheel_radius
+    at_loads = [(load, *map(float, tyre.linear(load, tyre.pressure))) for load in study.envelope.loads]
+    seen: set[tuple[float, ...]] = set()
+    for load, side, moment, sigma, a in at_loads:
+        data = tuple(round(value, 9) for value in (side / load, moment / load, sigma, a))
+        if data in seen:  # the same at every load
+            continue
+        seen.add(data)
         where = f"at {load / 1e3:.4g} kN"
-        yield Implausible("tyre", f"the slope of the side force, per radian and load, {where},", side / load, "1", (1.0, 30.0))
+        yield Implausible("tyre", f"the slope of the side force, per radian and load, {where}", side / load, "1", (1.0, 30.0))
         if side:
             yield Implausible("tyre", f"the pneumatic trail {where}", moment / side, "m", (0.0, 2 * a))
         yield Implausible("tyre.relaxation_length", f"the relaxation length {where}", sigma, "m", (0.5 * a, 10 * a))
-        yield Implausible(
-            "tyre.half_contact_length", f"the half contact length {where}", a, "m", (0.05 * gear.wheel_radius, gear.wheel_radius)
-        )
+        yield Implausible("tyre.half_contact_length", f"the half contact length {where}", a, "m", (0.05 * radius, radius))
 
 
 def _of_gear(study: Study) -> Iterator[Implausible]:
@@ -100,7 +103,7 @@ def _of_gear(study: Study) -> Iterator[Implausible]:
     carried = max(study.envelope.loads) / GRAVITY
     yield Implausible(
         "gear.yaw_inertia",
-        "what swivels, as a mass at the radius of the wheel,",
+        "what swivels, as a mass at the radius of the wheel",
         gear.yaw_inertia / radius**2,
         "kg",
         (carried / 1000, carried),
@@ -112,13 +115,13 @@ def _of_frequencies(study: Study, design: Mapping[str, float] | None) -> Iterato
     lateral = getattr(gear, "lateral", None)
     if lateral is not None and lateral.stiffness:
         frequency = math.sqrt(lateral.stiffness / lateral.inertia) / (2 * math.pi)
-        yield Implausible("gear.lateral", "the frequency of lateral bending, without the tyre,", frequency, "Hz", usual)
+        yield Implausible("gear.lateral", "the frequency of lateral bending, without the tyre", frequency, "Hz", usual)
     if design is None and study.variables:
         return
     stiffness = study.damper.linkage(dict(design or {}), study.material.youngs_modulus).torsional_stiffness
     frequency = math.sqrt(max(float(stiffness), 0.0) / gear.yaw_inertia) / (2 * math.pi)
     yield Implausible(
-        "gear.yaw_inertia", "the frequency of yaw against the stiffness of the damper, without the tyre,", frequency, "Hz", usual
+        "gear.yaw_inertia", "the frequency of yaw against the stiffness of the damper, without the tyre", frequency, "Hz", usual
     )
 
 

@@ -25,7 +25,7 @@ from .disturbances import Disturbance, Kick, Release
 __all__ = ["DecayRequirement", "Fatigue", "Requirements"]
 
 
-_FRACTION = re.compile(r"\s*([0-9]{1,9})\s*/\s*([0-9]{1,9})\s*")
+_FRACTION = re.compile(r"\s*(0|[1-9][0-9]{0,8})\s*/\s*([1-9][0-9]{0,8})\s*")
 
 
 def _fraction(found: Any) -> Any:
@@ -33,7 +33,7 @@ def _fraction(found: Any) -> Any:
     if not isinstance(found, str) or "/" not in found:
         return found
     parts = _FRACTION.fullmatch(found)
-    if not parts or not int(parts[2]):
+    if not parts:
         raise refuse("", f"{quoted(found)} is no fraction", "a number such as 0.3, or a fraction such as 1/3")
     return int(parts[1]) / int(parts[2])
 
@@ -46,7 +46,7 @@ _Ratio = Annotated[
         {
             "anyOf": [
                 {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-                {"type": "string", "pattern": r"^\s*[0-9]{1,9}\s*/\s*0*[1-9][0-9]{0,8}\s*$"},
+                {"type": "string", "pattern": r"^\s*(0|[1-9][0-9]{0,8})\s*/\s*[1-9][0-9]{0,8}\s*$"},
             ]
         }
     ),

@@ -7,6 +7,7 @@ import inspect
 import textwrap
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from pydantic import BaseModel
@@ -92,16 +93,20 @@ def meanings(kind: type[BaseModel]) -> dict[str, str]:
         except (OSError, TypeError, SyntaxError, ValueError):  # made at run time: its bases say what its fields mean
             continue
         statements = getattr(body, "body", [])
-        for field, text in zip(statements, statements[1:], strict=False):
-            if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(text, ast.Expr):
-                if isinstance(text.value, ast.Constant) and isinstance(text.value.value, str):
-                    found[field.target.id] = inspect.cleandoc(text.value.value).replace("`", "")
+        for field, text in pairwise(statements):
+            match field, text:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(words))):
+                    found[name] = inspect.cleandoc(words).replace("`", "")
     return found
 
 
 def _describe(described: dict[str, Any], meaning: str) -> None:
     """The meaning of a key, and what a number may be, where an editor shows them."""
-    parts = [described, *described.get("anyOf", ()), *([described["items"]] if isinstance(described.get("items"), dict) else [])]
+    parts = [
+        described,
+        *described.get("anyOf", ()),
+        *([described["items"]] if isinstance(described.get("items"), dict) else []),
+    ]
     allowed = next((part["$comment"] for part in parts if "$comment" in part), "")
     text = "\n".join(filter(None, [meaning, allowed]))
     if text:

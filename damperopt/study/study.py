@@ -10,7 +10,7 @@ from html import escape
 from typing import Any, Self
 
 import yaml
-from pydantic import BaseModel, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
 from ..errors import ConfigError
 from ..quantities.named import DesignVariable

@@ -141,6 +141,10 @@ def values_of(text: str, study: Study, option: str) -> tuple[str, list[float]]:
 
 
 def _in_unit(study: Study, name: str, text: str, option: str) -> float:
+    if len(name) > 100:
+        raise ConfigError(
+            f"{option}: {quoted(name)} is unknown; allowed: speed, load, a design variable or a key path of the study"
+        )
     unit = unit_of_quantity(study, quantity_name(study, name))
     return quantity(text.strip(), Annotated[float, Quantity(unit)], f"{option}: {name}")
 

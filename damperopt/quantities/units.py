@@ -253,6 +253,10 @@ class Quantity:
         text, exponent, unit = match[1], match[3] or "0", match[4]
         if len(text) > _LONGEST_NUMBER:
             self._refuse(f"{quoted(found)} has more digits than any measurement")
+        if not unit and math.isinf(float(found)):
+            self._refuse(f"{quoted(found)} is not a finite number")
+        if not unit and underflows(found):
+            self._refuse(f"{quoted(found)} is too small for a number and would become 0")
         if not unit:
             self._refuse(
                 f"{quoted(found)} is text without a unit (remove the quotes, or add the unit)" + self._about_digits(found)

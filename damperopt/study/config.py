@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import types
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -66,8 +67,11 @@ def loads(text: str, name: str = "<text>") -> Study:
 
 def is_sweep(text: str, name: str) -> bool:
     """Whether a text describes a sweep: a base that is varied."""
-    keys = read(text, name, "keys of a study or a sweep").data
-    return "base" in keys and not {"gear", "tyre", "damper"} & set(keys)
+    return _describes_a_sweep(read(text, name, "the keys of a study, or of a sweep").data)
+
+
+def _describes_a_sweep(data: dict[str, Any]) -> bool:
+    return "base" in data and not {"gear", "tyre", "damper"} & set(data)
 
 
 def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tuple, int]]:
@@ -93,6 +97,10 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
     """
     document = read(text, name, ", ".join(model.model_fields))
     data, lines, name = document.data, document.lines, printable(name)
+    if model is Study and _describes_a_sweep(data):
+        raise ConfigError(
+            f"{name}:{lines[('base',)]}: base: this is a sweep, not a study; allowed: a study here, or 'damperopt sweep'"
+        )
     if document.empty:
         # an empty block would drop a requirement without a word
         raise ConfigError([
@@ -102,8 +110,22 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
     try:
         return model.model_validate(data), lines
     except ValidationError as error:
-        problems = [_message(problem, data, lines, name, model) for problem in error.errors(include_url=False)]
+        found = _without_other_branches(error.errors(include_url=False))
+        problems = [_message(problem, data, lines, name, model) for problem in found]
         raise ConfigError(few([text for _, text in sorted(set(problems))])) from None
+
+
+def _without_other_branches(problems: Sequence[Any]) -> list[Any]:
+    """Without 'no list' where a block was meant and has problems of its own, and the like."""
+
+    def other(problem: Any) -> bool:
+        *start, _ = problem["loc"] or ("",)
+        deeper = (found["loc"] for found in problems if len(found["loc"]) > len(problem["loc"]))
+        return problem["type"] in ("list_type", "model_type", "dict_type") and any(
+            list(loc[: len(start)]) == start for loc in deeper
+        )
+
+    return [problem for problem in problems if not other(problem)]
 
 
 def json_schema() -> dict[str, Any]:
@@ -166,65 +188,97 @@ def _what(problem: Any, path: tuple, model: type[BaseModel]) -> str:
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         tags = "'nonlinear', 'linear', 'straight_tangent'"
         return f"{'missing' if kind.endswith('found') else quoted(context.get('tag'))} tyre law; allowed: law: {tags}"
-    if kind.startswith("model_") or kind in ("dict_type", "model_type"):
-        return f"found {found} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path, model))}"
+    if kind.startswith("model_") or kind == "dict_type":
+        return f"found {found} instead of a block; allowed: {_allowed_at(path, model)}"
     if kind == "list_type":
-        return f"found {found} instead of a list; allowed: a list of items, each {_allowed_at(path, model)}"
+        return f"found {found} instead of a list; allowed: {_allowed_at(path, model)}"
+    if kind == "value_error":
+        return problem["msg"].removeprefix("Value error, ")
     return f"found {found}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path, model)}"
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:
-    """Record classes inside an annotation."""
+    """Record classes that an annotation may stand for; those behind the keys of a mapping are not."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
+    if get_origin(annotation) is dict:
+        return []
     return [model for part in getattr(annotation, "__args__", ()) for model in _models(part)]
 
 
-def _fields_at(path: tuple, model: type[BaseModel]) -> list[Any]:
-    fields: list[Any] = []
-    models: list[type[BaseModel]] = [model]
+def _types_at(path: tuple, model: type[BaseModel]) -> list[Any]:
+    """Types that may stand at a key path, with what limits them."""
+    found: list[Any] = [model]
     for key in path:
-        if isinstance(key, int):
-            continue
-        fields = [inner.model_fields[key] for inner in models if key in inner.model_fields]
-        models = [inner for field in fields for inner in _models(field.annotation)]
-    return fields
+        found = [inner for annotation in found for inner in _types_behind(key, annotation)]
+    return found
+
+
+def _types_behind(key: Any, annotation: Any) -> list[Any]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        fields = [field for name, field in annotation.model_fields.items() if key in (name, field.alias)]
+        return [Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation for field in fields]
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is dict:
+        return [parts[1]]
+    if origin in (list, tuple) and isinstance(key, int):
+        return [parts[min(key, len(parts) - 1)]]
+    return [inner for part in getattr(annotation, "__args__", ()) for inner in _types_behind(key, part)]
 
 
 def _keys_at(path: tuple, model: type[BaseModel]) -> list[str]:
-    models = [inner for field in _fields_at(path, model) for inner in _models(field.annotation)] if path else [model]
-    return list(dict.fromkeys(key for inner in models for key in inner.model_fields))
+    models = [inner for annotation in _types_at(path, model) for inner in _models(annotation)]
+    return list(dict.fromkeys(field.alias or key for inner in models for key, field in inner.model_fields.items()))
 
 
 def _allowed_at(path: tuple, model: type[BaseModel]) -> str:
-    for field in _fields_at(path, model):
-        quantity = quantity_of(field.annotation, field.metadata)
+    behind = _types_at(path, model)
+    for annotation in behind:
+        quantity = quantity_of(annotation)
         if quantity:
             return quantity.describe()
-    for field in _fields_at(path, model):
-        limits = {k: v for m in field.metadata for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
+    for annotation in behind:
+        limits = {k: v for m in _notes(annotation) for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
         if limits:
             words = [f"{sign} {limits[k]}" for k, sign in (("ge", ">="), ("le", "<=")) if k in limits]
             return f"a whole number, {' and '.join(words)}"
     keys = _keys_at(path, model)
-    if keys:
-        return f"a mapping with the keys {', '.join(keys)}"
-    words = [_in_words(field.annotation) for field in _fields_at(path, model)]
+    words = [f"a mapping with the keys {', '.join(keys)}"] if keys else []
+    others = [part for annotation in behind for part in _parts(annotation) if not (keys and _models(part))]
+    words += [_in_words(part) for part in others]
     return " or ".join(dict.fromkeys(words)) or "see the documentation, 'A study, key by key'"
+
+
+def _notes(annotation: Any) -> list[Any]:
+    """What limits a number, however deep pydantic packs it."""
+    notes = list(getattr(annotation, "__metadata__", ()))
+    return notes + [note for outer in notes for note in getattr(outer, "metadata", ())]
+
+
+def _parts(annotation: Any) -> list[Any]:
+    """What a union is made of."""
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _parts(parts[0])
+    if origin in (Union, types.UnionType):
+        return [inner for part in parts if part is not type(None) for inner in _parts(part)]
+    return [annotation]
 
 
 def _in_words(annotation: Any) -> str:
     """What a field takes that is neither a quantity nor a block."""
-    plain = {str: "text", bool: "true or false", int: "a whole number", float: "a number", Any: "a number, a name or a block"}
+    plain = {str: "text", bool: "true or false", int: "a whole number", float: "a number", Any: "a value"}
     origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _in_words(parts[0])
     if origin is Literal:
         return " or ".join(map(repr, parts))
     if origin in (list, tuple):
-        inside = [part for part in parts if part is not ...]
-        return "a list of items, each " + " or ".join(dict.fromkeys(map(_in_words, inside)))
+        inside = [_in_words(part) for part in parts if part not in (..., Any)]
+        return "a list" + (f", each item {' or '.join(dict.fromkeys(inside))}" if inside else "")
     if origin is dict:
         return f"a mapping of key paths, each with {_in_words(parts[1])}"
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return "{" + ", ".join(field.alias or name for name, field in annotation.model_fields.items()) + "}"
-    inside = [part for part in parts if part is not type(None)] if parts else []
+    inside = [part for part in parts if part is not type(None)]
     return " or ".join(dict.fromkeys(map(_in_words, inside))) if inside else plain.get(annotation, "text")

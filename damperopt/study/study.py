@@ -15,6 +15,7 @@ from pydantic import ValidationError, model_validator
 from ..errors import ConfigError
 from ..quantities.named import DesignVariable
 from ..quantities.record import Name, Record, quantity_of, refuse
+from ..reading import printable
 from ..strength.materials import Material
 from .changes import changed
 from .components import DAMPER, GEAR, TYRE
@@ -141,9 +142,12 @@ class Study(Record):
 
 
 def _problem_in_words(problem: Any) -> str:
-    path = [*problem["loc"], *filter(None, [problem.get("ctx", {}).get("key")])]
+    path = [
+        *(step for step in problem["loc"] if not str(step).startswith("<")),
+        *filter(None, [problem.get("ctx", {}).get("key")]),
+    ]
     what = "unknown key" if problem["type"] == "extra_forbidden" else problem["msg"]
-    return f"{'.'.join(map(str, path))}: {what}"
+    return f"{printable('.'.join(map(str, path)))}: {what}"
 
 
 def unit_of(study: Study, path: str) -> str:

@@ -13,9 +13,11 @@ from ..stability.linear import LinearModel, spectral_abscissa
 from ..study.study import Study, unit_of
 from ..symbols import data_names, data_values
 
-__all__ = ["Axis", "Plane", "quantity_name", "unit_of_quantity"]
+__all__ = ["OPERATING", "Axis", "Plane", "quantity_name", "unit_of_quantity"]
 
 OPERATING = {"speed": "m/s", "vertical_load": "N"}
+"""Quantities of the operating point, which no design can choose."""
+
 DESIGN_UNITS = {"c_lambda": "N s/m", "k_lambda": "N/m", "I_arm": "m^4", "L": "m", "gamma": "rad", "b": "m"}
 BATCH = 20_000
 """Matrices that are in memory at once."""

@@ -57,11 +57,11 @@ def parts_of(topology: str, design: Mapping[str, float]) -> list[Part]:
     b = design["b"]
     if topology == "utas":
         return [lower_link, Part("bending arm", "arm", (0.0, b, h_0), apex), Part("damper", "damper", (0.0, -b, h_0), apex)]
-    support = (reach, b, 0.0)
+    support = (reach, -b, 0.0)
     return [
         lower_link,
         Part("bending arm", "arm", upper, apex),
-        Part("rigid support", "support", (0.0, b, h_0), support),
+        Part("rigid support", "support", (0.0, -b, h_0), support),
         Part("damper", "damper", support, apex),
     ]
 

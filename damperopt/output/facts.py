@@ -108,21 +108,24 @@ def sizes(study: Study, result: DesignResult) -> list[Size]:
     list of Size
         Tapered links and supports at their root, which is sized to its allowable stress exactly.
     """
-    event, design = SimpleNamespace(**result.limit_event), result.design
+    peaks, design, model = result.limit_event, result.design, study.mass
+    if not {"linkage_torque", "damper_stroke", "damper_force"} <= peaks.keys():
+        return []
+    found: list[Size] = []
     allowable = allowable_stress(study.material, study.required.safety_factor)
-    reach, model = design["L"] * math.sin(design["gamma"]), study.mass
-    root = event.linkage_torque / reach * design["L"] / allowable
-    found = _section("torque links, root", model.link_section, area_for_modulus(model.link_section, root), 0.0)
+    if {"L", "gamma"} <= design.keys():
+        root = peaks["linkage_torque"] / math.sin(design["gamma"]) / allowable
+        found += _section("torque links, root", model.link_section, area_for_modulus(model.link_section, root), 0.0)
     if "I_arm" in design:
-        by_name = {c.name: c for c in result.constraints}
-        stress = by_name.get("arm_stress")
+        stress = next((c for c in result.constraints if c.name == "arm_stress"), None)
         margin = None if stress is None else stress.limit / stress.value - 1
         found += _section(
             "bending arm", model.arm_section, shape_numbers(model.arm_section)[0] * design["I_arm"] ** 0.5, margin
         )
-    if "support arm" in (result.mass.parts if result.mass else {}):
-        root = event.damper_force * design["b"] / allowable
+    if result.mass is not None and "support arm" in result.mass.parts:
+        root = peaks["damper_force"] * design["b"] / allowable
         found += _section("support arm, root", model.support_section, area_for_modulus(model.support_section, root), 0.0)
+    event = SimpleNamespace(stroke=peaks["damper_stroke"], damper_force=peaks["damper_force"])
     return found + _damper(study, event, result.derived.get("rod_diameter"))
 
 

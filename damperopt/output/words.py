@@ -80,8 +80,7 @@ def asked(study: Study) -> list[str]:
     loads = _range(envelope.loads, "N", isinstance(envelope.vertical_load, LoadRange))
     layout = LAYOUTS.get(study.damper.topology, study.damper.topology)
     found = [
-        f"The lightest {layout} in {study.material.name}, geometry {study.damper.geometry}, "
-        f"order {study.gear.order}.",
+        f"The lightest {layout} in {study.material.name}, geometry {study.damper.geometry}, order {study.gear.order}.",
         f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speeds}, at {loads}.",
     ]
     if required.decay is not None:

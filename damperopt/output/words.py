@@ -133,7 +133,7 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
-        lines.append(Line((MEANINGS.get(name, name), name, *shown(value, UNITS[name]), bounds), bool(bounds)))
+        lines.append(Line((MEANINGS.get(name, name), name, *shown(value, UNITS.get(name, "1")), bounds), bool(bounds)))
     return lines
 
 

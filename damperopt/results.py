@@ -271,7 +271,7 @@ class DesignResult(_Record):
     per cent of the limits of each kind of constraint.
     """
 
-    schema_version: Literal[1] = SCHEMA_VERSION
+    schema_version: Literal[1] = 1
     status: Literal["solved", "infeasible", "failed"]
     message: str
     study: str

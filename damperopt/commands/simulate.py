@@ -63,7 +63,7 @@ def simulate(
 
         write_trajectory(place / "trajectory.csv", motion)
         write_motion(place / "motion.json", motion, found, disturbance, values or study.start)
-        figures.save(figures.trajectory(motion, found), place, "trajectory")
+        figures.save_each({"trajectory": lambda: figures.trajectory(motion, found)}, place)
 
     write_run(folder, write)
     summary.show_motion(out, motion, found, required.cycles if required else 3)

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter
 from ..charts.chart import Curve, Family, StabilityChart
 from ..charts.maps import FilledMap
 from ..charts.plane import OPERATING
-from ..quantities.shown import as_written, axis_label, rounded, scale, shown
+from ..quantities.shown import axis_label, rounded, scale, shown, written
 from .style import quantity_words, styled
 
 __all__ = ["chart"]
@@ -106,9 +106,7 @@ def _title(record: StabilityChart, filled: FilledMap | None) -> str:
     """What is drawn, and where."""
     boundary = "stability boundary" if record.margin == 0 else f"boundary of the margin of {record.margin:g} 1/s"
     words = boundary if filled is None else f"{MAPS[filled.quantity][0]} and {boundary}"
-    (speed,), speed_unit = as_written([record.speed], "m/s")
-    (load,), load_unit = as_written([record.load], "N")
-    held = [("speed", f"{speed} {speed_unit}"), ("vertical_load", f"{load} {load_unit}")]
+    held = [("speed", written(record.speed)), ("vertical_load", written(load=record.load))]
     names = {record.x.name, record.y.name, record.varied.name if record.varied else ""}
     return f"{words[0].upper()}{words[1:]}" + "".join(f", {text}" for name, text in held if name not in names)
 
@@ -165,8 +163,7 @@ def _value_words(record: StabilityChart, family: Family) -> str:
     if record.varied is None or family.value is None:
         return "boundary"
     if record.varied.name in OPERATING:
-        (text,), unit = as_written([family.value], record.varied.unit)
-        return f"{text} {unit}"
+        return written(**{"speed" if record.varied.name == "speed" else "load": family.value})
     return " ".join(shown(family.value, record.varied.unit)).strip()
 
 

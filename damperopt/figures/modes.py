@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullLocator
 
+from ..quantities.shown import written
 from ..stability.modes import ModeTable
 from .style import COLOURS, OTHERS, plain, styled
 
@@ -123,5 +124,5 @@ def modes_before_after(before: ModeTable, after: ModeTable, margin: float) -> An
         _legend(figure, axes[0])
         for axis in axes[:, 1]:
             axis.set_ylabel("")
-        figure.suptitle(f"Modes over speed at {after.load / 1e3:g} kN", fontsize=11)
+        figure.suptitle(f"Modes over speed at {written(load=after.load)}", fontsize=11)
         return figure

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from ..motion.trajectory import TRAJECTORY_UNITS, Motion, Trajectory
-from ..quantities.shown import axis_label, scale
+from ..quantities.shown import axis_label, scale, written
 from ..results import DecayCheck
 from .style import COLOURS, plain, styled
 
@@ -53,7 +53,7 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
         rows[-1, 0].set_xlabel("Time [s]")
         figure.align_ylabels(rows[:, 0])
         words = motion.kind if not record.message else f"{motion.kind}: {plain(record.message)}"
-        figure.suptitle(f"{record.speed:g} m/s, {record.load / 1e3:g} kN: {words}", fontsize=10)
+        figure.suptitle(f"{written(record.speed, record.load)}: {words}", fontsize=10)
         return figure
 
 
@@ -82,7 +82,7 @@ def decay(record: Trajectory, check: DecayCheck, speeds: np.ndarray, ratios: np.
             left.plot([after, record.time[-1]], [sign * np.degrees(check.limit * first)] * 2, color="#333333", ls="--", lw=1)
         left.text(record.time[-1], np.degrees(check.limit * first) * 1.15, limit, ha="right", fontsize=9, color="#333333")
         left.set(xlabel="Time [s]", ylabel="Yaw angle [deg]")
-        left.set_title(f"Worst speed, {check.speed:.1f} m/s, {check.load / 1e3:g} kN", fontsize=10)
+        left.set_title(f"Worst speed, {check.speed:.1f} m/s, {written(load=check.load)}", fontsize=10)
         left.margins(x=0)
         right.plot(speeds, ratios, color=COLOURS["torsional"])
         right.axhline(check.limit, color="#333333", ls="--", lw=1)

@@ -15,6 +15,7 @@ from ..motion.decay import decay_analysis
 from ..motion.simulate import Simulator
 from ..motion.trajectory import Trajectory
 from ..optimum.region import FeasibleRegion, feasible_region
+from ..quantities.shown import written
 from ..results import DesignResult
 from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
@@ -317,7 +318,7 @@ def _drawing_of(table: ModeTable, margin: float) -> Callable[[], Any]:
     def drawn() -> Any:
         from .. import figures
 
-        return figures.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN")
+        return figures.modes_over_speed(table, margin, f"Modes over speed at {written(load=table.load)}")
 
     return drawn
 

@@ -159,8 +159,8 @@ def decided_by(result: DesignResult) -> str:
     """Which requirement decides the mass, in a sentence."""
     if not result.decided_by:
         return ""
-    parts = [f"{KINDS.get(kind, kind)} {weight:.2g} %" for kind, weight in result.decided_by.items()]
-    return f"If the limits of one kind were eased by 1 %, the mass would fall by: {', '.join(parts)}."
+    parts = [f"{KINDS.get(kind, kind)} {weight:.2g}\u00a0%" for kind, weight in result.decided_by.items()]
+    return f"If the limits of one kind were eased by 1\u00a0%, the mass would fall by: {', '.join(parts)}."
 
 
 def load_rows(result: DesignResult) -> list[Line]:

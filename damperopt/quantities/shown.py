@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["as_written", "axis_label", "rounded", "scale", "shown", "unit_text"]
+__all__ = ["as_written", "axis_label", "rounded", "scale", "shown", "unit_text", "written"]
 
 _SCALES: dict[str, tuple[str, float]] = {
     "m": ("mm", 1e3),
@@ -152,3 +152,15 @@ def as_written(values: Sequence[float], unit: str) -> tuple[list[str], str]:
 
 def _is_short(value: float) -> bool:
     return abs(float(f"{value:.{_SHORT}g}") - value) <= 1e-12 * abs(value)
+
+
+def written(speed: float | None = None, load: float | None = None) -> str:
+    """A speed [m/s], a vertical load [N] or both, in the units in which they were asked.
+
+    Examples
+    --------
+    >>> written(61.733333333333334, 22e3)
+    '120 kt, 22 kN'
+    """
+    found = [as_written([value], unit) for value, unit in ((speed, "m/s"), (load, "N")) if value is not None]
+    return ", ".join(f"{numbers[0]} {unit}" for numbers, unit in found)

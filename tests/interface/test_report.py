@@ -162,10 +162,10 @@ def test_no_design_says_what_is_missing(main_gear, tmp_path):
     assert result.infeasibility.shortfalls[0].name.replace("_", " ") in text
 
 
-def test_ranking_has_a_row_for_each_combination(solved):
+def test_ranking_has_a_row_for_each_combination(solved, page):
     _, result = solved
     other = result.model_copy(update={"material": "another steel"})
-    text = plain(report_of([result, other]))
+    text = plain(report_of([result, other], page.parent))
     assert "Ranking at equal margins" in text
     assert "2 arreaza another steel" in text
 

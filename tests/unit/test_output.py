@@ -10,6 +10,7 @@ import damperopt
 from damperopt import figures as plots
 from damperopt.optimum.region import feasible_region
 from damperopt.output import folder as output
+from damperopt.stability.linear import LinearModel
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +108,7 @@ def test_region_is_stable_where_eigenvalues_say_so(solved):
     study, result = solved
     region = feasible_region(study, result.design, points=15)
     speeds = np.geomspace(5, 100, 24)
-    model = damperopt.stability.LinearModel(study)
+    model = LinearModel(study)
     for i, y in enumerate(region.y):
         for j, x in enumerate(region.x):
             design = result.design | {region.x_name: x, region.y_name: y}

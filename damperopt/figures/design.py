@@ -9,7 +9,8 @@ import numpy as np
 
 from ..optimum.region import FeasibleRegion
 from ..quantities.shown import axis_label, scale
-from ..results import UNITS, DesignResult
+from ..results import DesignResult
+from ..study.components import unit_of_name
 from .style import plain, quantity_words, styled
 
 __all__ = ["mass_by_part", "region", "tornado"]
@@ -61,7 +62,7 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
     with styled():
         if axis is None:
             _, axis = plt.subplots(figsize=(7.5, 5.6))
-        (_, to_x), (_, to_y) = scale(UNITS[record.x_name]), scale(UNITS[record.y_name])
+        (_, to_x), (_, to_y) = scale(unit_of_name(record.x_name)), scale(unit_of_name(record.y_name))
         X, Y = record.x * to_x, record.y * to_y
         # the scale first: labels of the mass lines are placed on it
         axis.set(xscale="log", yscale="log", xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]))
@@ -90,8 +91,8 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         (star,) = axis.plot(*at, "*", ms=14, color="#e0a100", mec="black", ls="none")
         handles.append(star)
         labels.append("optimum")
-        axis.set_xlabel(axis_label(quantity_words(record.x_name), UNITS[record.x_name]))
-        axis.set_ylabel(axis_label(quantity_words(record.y_name), UNITS[record.y_name]))
+        axis.set_xlabel(axis_label(quantity_words(record.x_name), unit_of_name(record.x_name)))
+        axis.set_ylabel(axis_label(quantity_words(record.y_name), unit_of_name(record.y_name)))
         axis.figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
         axis.set_title("Feasible region, other variables at the optimum", fontsize=10)
         return axis.figure

@@ -7,9 +7,10 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..motion.trajectory import TRAJECTORY_UNITS, Motion, Trajectory
+from ..motion.trajectory import Motion, Trajectory
 from ..quantities.shown import axis_label, scale, written
 from ..results import DecayCheck
+from ..study.components import unit_of_name
 from .style import COLOURS, plain, styled
 
 __all__ = ["decay", "trajectory"]
@@ -19,6 +20,8 @@ PANELS = (
     ("Lateral", (("lateral_displacement", "gear, $l_g \\sin\\delta$"), ("string_deflection", "tyre string"))),
     ("Damper force", (("damper_force", ""),)),
     ("Damper stroke", (("damper_stroke", ""),)),
+    ("Damper torque", (("damper_torque", ""),)),
+    ("Damper angle", (("damper_angle", ""),)),
     ("Arm stress", (("arm_stress", ""),)),
 )
 """Panels of a trajectory: words of the axis, and (name, label) of each curve."""
@@ -42,7 +45,7 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
     with styled():
         figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)
         for axis, (label, curves) in zip(rows[:, 0], panels, strict=True):
-            unit = TRAJECTORY_UNITS[curves[0][0]]
+            unit = unit_of_name(curves[0][0])
             for (name, legend), colour in zip(curves, COLOURS.values(), strict=False):
                 axis.plot(record.time, scale(unit)[1] * record[name], lw=1, color=colour, label=legend)
             axis.set_ylabel(axis_label(label, unit))

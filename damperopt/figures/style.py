@@ -11,7 +11,9 @@ from typing import Any
 import matplotlib
 import matplotlib.pyplot as plt
 
-__all__ = ["COLOURS", "STYLE", "SYMBOLS", "plain", "quantity_words", "save", "save_each", "styled"]
+from ..study.components import design_variables
+
+__all__ = ["COLOURS", "STYLE", "plain", "quantity_words", "save", "save_each", "styled"]
 
 logger = logging.getLogger("damperopt")
 
@@ -27,14 +29,6 @@ STYLE: Any = {
     "axes.spines.right": False,
     "figure.constrained_layout.use": True,
     "svg.hashsalt": "damperopt",
-}
-SYMBOLS = {
-    "c_lambda": r"Damping $c_\lambda$",
-    "k_lambda": r"Spring stiffness $k_\lambda$",
-    "I_arm": r"Second moment of area of the arm $I_\mathrm{arm}$",
-    "L": r"Length of the torque links $L$",
-    "gamma": r"Angle of the links $\gamma$",
-    "b": r"Side distance $b$",
 }
 BLOCKS = ("gear", "tyre", "damper", "material", "requirements", "mass", "envelope")
 """Blocks of a study that say nothing of what their keys are."""
@@ -78,8 +72,10 @@ def plain(text: str) -> str:
 
 def quantity_words(name: str) -> str:
     """A design variable or key path as the label of an axis: ``gear.lateral.stiffness`` is Lateral stiffness."""
-    if name in SYMBOLS:
-        return SYMBOLS[name]
+    variable = design_variables().get(name)
+    if variable is not None:
+        words = variable.meaning or variable.name
+        return f"{plain(words[:1].upper() + words[1:])} {variable.symbol}".strip()
     blocks, _, last = name.rpartition(".")
     block = blocks.rpartition(".")[2]
     says_enough = not block or (block in BLOCKS and "_" in last)

@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
-from ..objectives import allowable_stress, bore, rod_diameters, rod_length
+from ..motion.measure import PEAKS
+from ..ports.linkage import Member
+from ..ports.sizing import LimitEvent
 from ..results import DesignResult
 from ..stability.critical import CriticalSpeed, critical_speeds
 from ..stability.linear import LinearGear
 from ..stability.modes import ModeTable
+from ..strength.cylinder import bore, rod_diameters, rod_length
+from ..strength.materials import allowable_stress
+from ..strength.members import distance, root_stress
 from ..strength.sections import area_for_modulus, fibre_distance, shape_numbers
 from ..study.study import Study
 
@@ -88,10 +91,11 @@ def next_critical_speed(study: Study, gear: LinearGear) -> CriticalSpeed | None:
     return min(turning, key=lambda c: c.speed, default=None)
 
 
-def damper_speed(result: DesignResult) -> float | None:
-    """Peak speed of the damper in the limit event [m/s], by its linear damping; None without one."""
-    force, damping = result.limit_event.get("damper_force"), result.design.get("c_lambda")
-    return force / damping if force is not None and damping else None
+def damper_speed(study: Study, result: DesignResult) -> float | None:
+    """Peak speed of the damper in the limit event [m/s], by its linear damping; None where no one number says that."""
+    force = result.limit_event.get("damper_force")
+    damping = study.damper.damping(result.design) if result.design else None
+    return force / float(damping) if force is not None and damping else None
 
 
 def sizes(study: Study, result: DesignResult) -> list[Size]:
@@ -108,53 +112,68 @@ def sizes(study: Study, result: DesignResult) -> list[Size]:
     list of Size
         Tapered links and supports at their root, which is sized to its allowable stress exactly.
     """
-    peaks, design, model = result.limit_event, result.design, study.mass
-    if not {"linkage_torque", "damper_stroke", "damper_force"} <= peaks.keys():
+    event = _event(study, result)
+    if event is None:
         return []
     found: list[Size] = []
+    for member in study.damper.members(result.design):
+        if member.section:
+            found += _member(study, member, event)
+    return found + _cylinder(study, event, result.derived.get("rod_diameter"))
+
+
+def _event(study: Study, result: DesignResult) -> LimitEvent | None:
+    """The limit event of a result, with what follows from its peaks."""
+    peaks = result.limit_event
+    if not set(PEAKS) <= peaks.keys():
+        return None
+    reach = study.damper.linkage(result.design, study.material.youngs_modulus).reach
+    return LimitEvent(
+        *(peaks[name] for name in ("linkage_torque", "yaw_angle")),
+        yaw_rate=math.nan,
+        stroke=peaks["damper_stroke"],
+        damper_force=peaks["damper_force"],
+        apex_force=peaks["linkage_torque"] / float(reach),
+        arm_moment=math.nan,
+        spring_force=peaks["spring_force"],
+        spring_energy=math.nan,  # like the other two: no size of a member hangs on it
+        safety_factor=study.required.safety_factor,
+    )
+
+
+def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
+    """Height and wall of the section of a member; at its root, if it is a cantilever that its load sizes."""
+    section = getattr(study.mass, member.section)
     allowable = allowable_stress(study.material, study.required.safety_factor)
-    if {"L", "gamma"} <= design.keys():
-        root = peaks["linkage_torque"] / math.sin(design["gamma"]) / allowable
-        found += _section("torque links, root", model.link_section, area_for_modulus(model.link_section, root), 0.0)
-    if "I_arm" in design:
-        stress = next((c for c in result.constraints if c.name == "arm_stress"), None)
-        margin = None if stress is None else stress.limit / stress.value - 1
-        found += _section(
-            "bending arm", model.arm_section, shape_numbers(model.arm_section)[0] * design["I_arm"] ** 0.5, margin
-        )
-    if result.mass is not None and "support arm" in result.mass.parts:
-        root = peaks["damper_force"] * design["b"] / allowable
-        found += _section("support arm, root", model.support_section, area_for_modulus(model.support_section, root), 0.0)
-    event = SimpleNamespace(stroke=peaks["damper_stroke"], damper_force=peaks["damper_force"])
-    return found + _damper(study, event, result.derived.get("rod_diameter"))
-
-
-def _section(part: str, section: Any, area: float, margin: float | None) -> list[Size]:
-    """Height and wall of a section of known area."""
-    inertia = (area / shape_numbers(section)[0]) ** 2
+    if member.inertia is None:
+        length = distance(member.start, member.end) if member.length is None else member.length
+        area = area_for_modulus(section, getattr(event, member.load) * length / allowable)
+        part, inertia, margin = f"{member.name}, root", (area / shape_numbers(section)[0]) ** 2, 0.0
+    else:
+        part, inertia, margin = member.name, member.inertia, allowable / root_stress(member, event, study) - 1
     height = 2 * fibre_distance(section, inertia)
     words = "outer diameter" if section.family in ("tube", "solid_round") else "height of the section"
-    found = [Size(part, words, height, "m", margin)]
+    found = [Size(part, words, float(height), "m", float(margin))]
     if section.thickness_ratio is not None:
-        found.append(Size(part, "wall", section.thickness_ratio * height, "m"))
+        found.append(Size(part, "wall", float(section.thickness_ratio * height), "m"))
     return found
 
 
-def _damper(study: Study, event: Any, rod: float | None) -> list[Size]:
+def _cylinder(study: Study, event: LimitEvent, rod: float | None) -> list[Size]:
     """Rod against yield (its area) and buckling (its second moment), cylinder against the working pressure."""
     if rod is None:
         return []
-    model, steel = study.mass, study.mass.damper_material
-    sigma = allowable_stress(steel, study.required.safety_factor)
-    least = {name: float(value) for name, value in rod_diameters(study, event).items()}
-    diameter = float(bore(study, event, rod))
+    model = study.mass
+    sigma = allowable_stress(model.damper_material, study.required.safety_factor)
+    least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}
+    diameter = float(bore(event, model, rod))
     needed = model.working_pressure * diameter / (2 * sigma)
-    wall = model.wall_allowance + needed  # as the mass of the cylinder is reckoned
+    wall = model.wall_allowance + needed  # as `cylinder_mass` reckons it
     return [
         Size("damper rod", "diameter, against yield", rod, "m", (rod / least["rod_yield"]) ** 2 - 1),
         Size("damper rod", "diameter, against buckling", rod, "m", (rod / least["rod_buckling"]) ** 4 - 1),
         Size("damper cylinder", "bore", diameter, "m"),
         Size("damper cylinder", "wall", wall, "m", wall / needed - 1),
-        Size("damper cylinder", "length of cylinder and rod", float(rod_length(study, event)), "m"),
+        Size("damper cylinder", "length of cylinder and rod", float(rod_length(event, model)), "m"),
         Size("damper cylinder", "peak pressure", model.working_pressure, "Pa"),
     ]

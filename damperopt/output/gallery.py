@@ -110,13 +110,13 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     StabilityChart
     """
     assert result.stability is not None
-    spring = "k_lambda" if result.topology == "boeing" else "I_arm"
-    c, k = result.design["c_lambda"], result.design[spring]
+    damping, spring = study.variable_names[0], study.damper.SPRING or study.variable_names[1]
+    c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
     return chart(
         study,
-        ("c_lambda", 0.0, 2.5 * c),
+        (damping, 0.0, 2.5 * c),
         (spring, 0.0, 2.5 * k),
         vary=("speed", speeds),
         margin=margin,
@@ -165,7 +165,7 @@ def _decay(answer: Answer) -> tuple[Trajectory, np.ndarray, np.ndarray]:
 def _draw_linkage(answer: Answer, _: None) -> Any:
     from ..figures.linkage import linkage
 
-    return linkage(answer.result.topology, answer.result.design)
+    return linkage(answer.study.damper, answer.result.design)
 
 
 def _draw_mass(answer: Answer, _: None) -> Any:

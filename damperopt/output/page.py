@@ -61,7 +61,7 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         covers=words.covers(study),
         design=words.design_rows(study, best),
         constraints=words.constraint_rows(best),
-        loads=words.load_rows(best),
+        loads=words.load_rows(study, best),
         sizes=words.size_rows(facts.sizes(study, best)) if answer else [],
         damping=words.damping_rows(facts.least_damping(_modes(answer))) if answer else [],
         beyond=words.beyond(study, facts.next_critical_speed(study, answer.model.at(best.design))) if answer else "",
@@ -74,7 +74,7 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
 def _study_of(result: DesignResult) -> Study:
     """The study that a result answers; refused where the two do not belong together."""
     try:
-        study = Study.model_validate(result.config)
+        study = Study.model_validate(_without_nothing(result.config))  # version 0.1 wrote empty keys of all layouts
     except ValueError:
         raise ConfigError(f"{result.study}: the result does not hold its study; allowed: a result.json of 'optimise'") from None
     pairs: list[tuple[str, Any, Any]] = [

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from ..charts.chart import StabilityChart
-from ..motion.trajectory import TRAJECTORY_UNITS, Motion, Trajectory
-from ..results import UNITS, DesignResult
+from ..motion.trajectory import Motion, Trajectory
+from ..results import DesignResult
 from ..stability.modes import ModeTable
+from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 
 __all__ = [
@@ -54,7 +55,7 @@ def write_ranking(path: Path, results: Sequence[DesignResult]) -> None:
     names = list(dict.fromkeys(name for result in results for name in result.design))
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        columns = [f"{name} [{UNITS[name]}]" for name in names]
+        columns = [f"{name} [{unit_of_name(name)}]" for name in names]
         writer.writerow(["rank", "topology", "material", "status", "mass_kg", "abscissa_1_s", *columns])
         for rank, result in enumerate(results, 1):
             mass = f"{result.mass.total:.9g}" if result.mass else ""
@@ -67,7 +68,7 @@ def write_trajectory(path: Path, motion: Trajectory) -> None:
     """Trajectory as CSV: time, states and outputs in SI, one row per output time."""
     names = ("time", *motion.states, *motion.outputs)
     columns = (motion.time, *motion.states.values(), *motion.outputs.values())
-    header = ",".join(f"{name} [{TRAJECTORY_UNITS[name]}]" for name in names)
+    header = ",".join(f"{name} [{unit_of_name(name)}]" for name in names)
     np.savetxt(path, np.column_stack(columns), fmt="%.10e", delimiter=",", header=header, comments="", encoding="utf-8")
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..quantities.record import LoadRange
 from ..quantities.shown import as_written, shown
 from ..quantities.shown import scale as scale_of
-from ..results import UNITS, DesignResult
+from ..results import DesignResult
 from ..stability.critical import CriticalSpeed
+from ..study.components import unit_of_name
 from ..study.study import Study
 from .facts import BEYOND, LeastDamping, Size, damper_speed
 
@@ -25,6 +27,7 @@ __all__ = [
     "decided_by",
     "design_rows",
     "input_words",
+    "layout_words",
     "load_rows",
     "number",
     "place",
@@ -32,30 +35,23 @@ __all__ = [
     "verification",
 ]
 
-MEANINGS = {
-    "c_lambda": "damping coefficient of the damper",
-    "k_lambda": "stiffness of the damper's spring",
-    "I_arm": "second moment of area of the bending arm",
-    "L": "length of the torque links",
-    "gamma": "angle of the links from the strut axis",
-    "b": "side distance of arm or damper",
+DERIVED = {
     "rod_diameter": "diameter of the damper's rod",
     "torsional_stiffness": "stiffness about the strut axis",
     "torsional_damping": "damping about the strut axis",
 }
-LAYOUTS = {
-    "boeing": "Boeing layout (damper and spring at the apex)",
-    "utas": "UTAS layout (bending arm and damper side by side)",
-    "arreaza": "Arreaza layout (bending arm, with a damper across it on a support arm)",
-}
+"""What follows from a whole design; what a component chooses, it declares with its meaning."""
+
 KINDS = {"strength": "strength", "geometry": "geometry", "decay": "decay", "stability": "stability margin", "bound": "bounds"}
 PEAKS = {
-    "linkage_torque": ("torque about the strut axis", "N m"),
-    "yaw_angle": ("yaw angle", "rad"),
-    "damper_stroke": ("damper stroke to one side", "m"),
-    "damper_force": ("damper force", "N"),
-    "spring_force": ("force at the tip of spring or arm", "N"),
+    "linkage_torque": "torque about the strut axis",
+    "yaw_angle": "yaw angle",
+    "damper_stroke": "damper stroke to one side",
+    "damper_force": "damper force",
+    "spring_force": "force at the tip of spring or arm",
 }
+"""What the peaks of the limit event are called."""
+
 NAMES = {"lower_lug_height": "height of the lower torque-link hinge above the axle"}
 """Keys that do not say what they are."""
 
@@ -78,9 +74,9 @@ def asked(study: Study) -> list[str]:
     required, envelope = study.required, study.envelope
     speeds = _range((envelope.speed.min, envelope.speed.max), "m/s", True)
     loads = _range(envelope.loads, "N", isinstance(envelope.vertical_load, LoadRange))
-    layout = LAYOUTS.get(study.damper.topology, study.damper.topology)
     found = [
-        f"The lightest {layout} in {study.material.name}, geometry {study.damper.geometry}, order {study.gear.order}.",
+        f"The lightest {study.damper.topology} layout in {study.material.name}, geometry {study.damper.geometry}. "
+        f"{study.damper.topology}: {layout_words(study)}",
         f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speeds}, at {loads}.",
     ]
     if required.decay is not None:
@@ -114,11 +110,16 @@ def input_words(key: str) -> str:
     return key if words is None else f"{key} ({words})"
 
 
+def layout_words(study: Study) -> str:
+    """What the layout of a study is, as its kind says it."""
+    return (inspect.getdoc(study.damper.LAYOUT) or "").partition("\n")[0]
+
+
 def answer(result: DesignResult) -> str:
     """The answer in one sentence."""
     if result.mass is None:
         return f"No design: {result.message}"
-    return f"{result.mass.total:.3f} kg: {LAYOUTS.get(result.topology, result.topology)} in {result.material}."
+    return f"{result.mass.total:.3f} kg: {result.topology} layout in {result.material}."
 
 
 def design_rows(study: Study, result: DesignResult) -> list[Line]:
@@ -129,11 +130,11 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     study : Study
     result : DesignResult
     """
-    lines = []
+    lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.damper.VARIABLES}
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
-        lines.append(Line((MEANINGS.get(name, name), name, *shown(value, UNITS.get(name, "1")), bounds), bool(bounds)))
+        lines.append(Line((meanings.get(name) or name, name, *shown(value, unit_of_name(name)), bounds), bool(bounds)))
     return lines
 
 
@@ -163,13 +164,12 @@ def decided_by(result: DesignResult) -> str:
     return f"If the limits of one kind were eased by 1\u00a0%, the mass would fall by: {', '.join(parts)}."
 
 
-def load_rows(result: DesignResult) -> list[Line]:
+def load_rows(study: Study, result: DesignResult) -> list[Line]:
     """What the parts must bear in the limit event: quantity, value, unit."""
     lines = []
     for name, value in result.limit_event.items():
-        words, unit = PEAKS.get(name, (name.replace("_", " "), "1"))
-        lines.append(Line((words, *shown(value, unit))))
-    speed = damper_speed(result)
+        lines.append(Line((PEAKS.get(name, name.replace("_", " ")), *shown(value, unit_of_name(name)))))
+    speed = damper_speed(study, result)
     if speed is not None:
         lines.append(Line(("damper speed", *shown(speed, "m/s"))))
     return lines
@@ -203,9 +203,9 @@ def beyond(study: Study, found: CriticalSpeed | None) -> str:
 
 def covers(study: Study) -> str:
     """What a certificate is a proof of."""
-    damper = study.damper
-    links = "rigid torque links" if damper.link_stiffness is None else "torque links as stiff as the study says"
-    series = "a damper without compliance" if damper.series_stiffness is None else "the damper's compliance in series"
+    damper, start = study.damper, study.start
+    links = "rigid torque links" if damper.links(start) is None else "torque links as stiff as the study says"
+    series = "a damper without compliance" if damper.series(start) is None else "the damper's compliance in series"
     return (
         f"The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction, {links}, {series}."

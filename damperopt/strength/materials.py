@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema
 from ..quantities.record import Density, Record, Stress, refuse
 from ..quantities.units import Quantity
 
-__all__ = ["MATERIALS", "Material"]
+__all__ = ["MATERIALS", "Material", "allowable_stress"]
 
 # Young's modulus and strengths in Pa, density in kg/m^3. Sources: MMPDS-class handbook values for the metals
 # (300M and 4340 at the quoted heat treatments, Ti-6Al-4V solution treated and aged); Basquin sigma_a = sigma_f' (2N)^b
@@ -86,3 +86,10 @@ class Material(Record):
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [{"enum": list(MATERIALS)}, handler.resolve_ref_schema(handler(schema))]}
+
+
+def allowable_stress(material: Any, safety_factor: Any) -> Any:
+    """Allowable stress at the limit event [Pa]: yield over the safety factor, or E times the design strain."""
+    if material.design_strain is not None:
+        return material.youngs_modulus * material.design_strain
+    return material.yield_strength / safety_factor

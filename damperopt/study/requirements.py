@@ -1,4 +1,4 @@
-"""Records of what a design must meet and of the mass model, with their documented defaults."""
+"""Records of what a design must meet, with their documented defaults."""
 
 from __future__ import annotations
 
@@ -8,25 +8,20 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from ..quantities.record import (
-    Coordinate,
-    Density,
     Distance,
-    Fraction,
     Length,
     LengthRange,
     Number,
     Rate,
     Record,
     Speed,
-    Stress,
     Torque,
     refuse,
 )
 from ..quantities.units import Quantity
-from ..strength.materials import Material
 from .disturbances import Disturbance, Kick, Release
 
-__all__ = ["DecayRequirement", "Fatigue", "MassModel", "Requirements", "Section"]
+__all__ = ["DecayRequirement", "Fatigue", "Requirements"]
 
 
 def _fraction(found: Any) -> Any:
@@ -116,72 +111,4 @@ class Requirements(Record):
     def _motions_to_size_by(self) -> Self:
         if self.limit_event == "simulated" and self.decay is None:
             raise refuse("decay", "missing key", "the block decay, whose motions limit_event 'simulated' takes its peaks from")
-        return self
-
-
-class Section(Record):
-    """Cross-section family of a beam: one shape at every size.
-
-    tube: wall over outer diameter `thickness_ratio`; rectangle: `aspect_ratio` height over width (bending along the
-    height); i_section: `aspect_ratio` height over flange width, `thickness_ratio` flange and web thickness over height.
-    """
-
-    family: Literal["solid_round", "tube", "rectangle", "i_section"] = "tube"
-    thickness_ratio: Annotated[float, Quantity("1", above=0, below=0.5)] | None = None
-    aspect_ratio: Number | None = None
-
-    @model_validator(mode="after")
-    def _shape(self) -> Self:
-        needs = {
-            "solid_round": set(),
-            "tube": {"thickness_ratio"},
-            "rectangle": {"aspect_ratio"},
-            "i_section": {"thickness_ratio", "aspect_ratio"},
-        }[self.family]
-        given = {key for key in ("thickness_ratio", "aspect_ratio") if getattr(self, key) is not None}
-        if given != needs:
-            raise refuse(
-                "", f"family '{self.family}' was given {sorted(given) or 'no ratio'}", f"exactly {sorted(needs) or 'no ratio'}"
-            )
-        if self.thickness_ratio and self.aspect_ratio and self.thickness_ratio * self.aspect_ratio >= 1:
-            raise refuse("", "the web is as wide as the flange", "thickness_ratio * aspect_ratio < 1")
-        return self
-
-
-_TUBE = Section(family="tube", thickness_ratio=0.1)
-
-
-class MassModel(Record):
-    """Numbers of the mass model; the defaults suit a main gear and are explained in the documentation."""
-
-    arm_section: Section = _TUBE
-    link_section: Section = _TUBE
-    support_section: Section = _TUBE
-    cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
-    """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
-    link_fittings_fraction: Fraction = 0.2
-    """Lugs, pins and bushings, as a fraction of the mass of links, bending arm and support arm."""
-    damper_material: Material = Material.model_validate("AISI 4340")
-    """Cylinder, rod, caps and Belleville spring; a metal."""
-    working_pressure: Stress = 20.7e6
-    """Peak damper pressure at the limit event [Pa] (3000 psi)."""
-    dead_length: Length = 0.12
-    """Damper length that is not stroke: eyes, glands, piston [m]."""
-    wall_allowance: Distance = 2e-3
-    """Added to the wall and caps that pressure needs [m]."""
-    least_rod_diameter: Length = 0.012
-    """Thinnest rod that is made [m]."""
-    rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
-    oil_density: Density = 860.0
-    damper_fittings_fraction: Fraction = 0.5
-    """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
-    spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3
-    """Stored energy of a Belleville stack over that of the same volume under uniform stress."""
-    lower_lug_height: Coordinate = 0.0
-    """Height of the lower torque-link hinge above the wheel axle [m]."""
-
-    @model_validator(mode="after")
-    def _damper_is_metal(self) -> Self:
-        if self.damper_material.yield_strength is None:
-            raise refuse("damper_material", f"'{self.damper_material.name}' has no yield strength", "a metal")
         return self

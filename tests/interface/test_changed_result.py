@@ -86,6 +86,15 @@ def test_names_stay_names_on_the_page(written, tmp_path):
     assert "{{ 7 * 7 }}" in text
 
 
+def test_empty_keys_of_other_layouts_are_no_contradiction(written, tmp_path):
+    """As the first version wrote them."""
+    record = changed(written, "config.damper.torsional_stiffness", None)
+    (tmp_path / "result.json").write_text(json.dumps(record))
+    for figure in figures_of(damperopt.load_result(tmp_path)):
+        (tmp_path / f"{figure.name}.svg").write_text("<svg/>")
+    assert "boeing layout" in write_report(tmp_path).read_text()
+
+
 def test_result_as_it_was_written_is_read(written, tmp_path):
     (tmp_path / "result.json").write_text(json.dumps(written))
     assert damperopt.load_result(tmp_path).status == "solved"

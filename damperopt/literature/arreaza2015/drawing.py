@@ -10,7 +10,7 @@ import numpy as np
 
 from ...figures.style import styled
 from ...quantities.shown import shown
-from ...results import UNITS
+from ...study.components import unit_of_name
 from .responses import Response, ThesisResponse
 
 __all__ = ["response"]
@@ -62,9 +62,8 @@ def _yaw_and_bending(figure: ThesisResponse, one: Response) -> Any:
 
 def _values(one: Response) -> str:
     symbols = {"c_lambda": r"$c_\lambda$", "k_lambda": r"$k_\lambda$", "I_arm": r"$I_\mathrm{arm}$"}
-    return ", ".join(
-        " ".join((symbol, *shown(one.design[name], UNITS[name]))) for name, symbol in symbols.items() if name in one.design
-    )
+    held = {symbol: shown(one.design[name], unit_of_name(name)) for name, symbol in symbols.items() if name in one.design}
+    return ", ".join(f"{symbol} {value} {unit}" for symbol, (value, unit) in held.items())
 
 
 def _amplitude(one: Response) -> str:

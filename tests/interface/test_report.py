@@ -41,10 +41,8 @@ def plain(text):
 def test_says_what_the_result_says(solved, page):
     _, result = solved
     text = plain(page.read_text())
-    assert (
-        f"{result.mass.total:.3f} kg: Arreaza layout (bending arm, with a damper across it on a support arm) in AISI 4340"
-        in text
-    )
+    assert f"{result.mass.total:.3f} kg: arreaza layout in AISI 4340" in text
+    assert "arreaza: One torque link; a bending arm in the plane of the strut, and a damper of length b across it" in text
     assert "Proved in rational arithmetic, without rounding: margin 0.1 1/s, every real speed from 5 to 100 m/s, 150 kN" in text
     for part, mass in result.mass.parts.items():
         assert f"{mass:.2f} kg {part}" in text

@@ -55,6 +55,10 @@ class DAE:
         """[design, speed, load, data, yaw_torque]: everything that is neither state nor unknown."""
         return [self.design, self.speed, self.load, self.data, self.yaw_torque]
 
+    def index(self, name: str) -> int:
+        """Position of a state by its name."""
+        return self.state_names.index(name)
+
     def first_guess(self) -> ca.SX:
         """Algebraic unknowns to first order about rest."""
         if not self.z.numel():

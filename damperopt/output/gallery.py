@@ -10,7 +10,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
-from ..motion.decay import decay_analysis
+from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
 from ..results import DesignResult
 from ..stability.linear import linear_gear
@@ -79,7 +79,9 @@ def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[],
         "chart": lambda: chart_plot.chart(
             design_chart(study, result, result.stability_margin), neutral=design_chart(study, result, 0.0)
         ),
-        "region": lambda: plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])),
+        "region": lambda: plots.region(
+            feasible_region(study, result.design, [(worst.speed, worst.load)], limit_event=result.limit_event)
+        ),
         "tornado": lambda: plots.tornado(result),
     }
     if result.decay is not None:
@@ -124,7 +126,7 @@ def _decay_figure(study: Study, result: DesignResult) -> Any:
     required, check = study.required.decay, result.decay
     assert required is not None
     assert check is not None
-    analysis = decay_analysis(study)
+    analysis = DecayAnalysis(study)
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
     ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]

@@ -13,7 +13,7 @@ from ..motion.exact import ExactSimulator
 from ..motion.measure import PEAKS, decay, latest_count, loads_of
 from ..motion.trajectory import Trajectory
 from ..results import DecayCheck, OperatingPoint
-from ..stability.linear import linear_gear
+from ..stability.linear import LinearModel
 from ..study.study import Study
 
 __all__ = ["GridCheck", "check_decay", "check_grid"]
@@ -48,7 +48,7 @@ class GridCheck:
     worst: OperatingPoint
 
 
-def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
+def check_grid(study: Study, design: Mapping[str, float], model: LinearModel | None = None) -> GridCheck:
     """Eigenvalues (`numpy.linalg.eigvals`) at `solver.verification_speeds` speeds and every load.
 
     Parameters
@@ -57,6 +57,8 @@ def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
         With requirements.
     design : mapping
         Design variables by name [SI].
+    model : LinearModel or None
+        Of the study, if it is at hand.
 
     Returns
     -------
@@ -69,13 +71,18 @@ def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
     speeds = np.clip(speeds, low, high)
     loads = np.linspace(envelope.loads[0], envelope.loads[-1], 21) if envelope.load_is_range else np.array(envelope.loads)
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
-    abscissa = linear_gear(study, design).abscissa(V, F_z)
+    abscissa = (model or LinearModel(study)).at(design).abscissa(V, F_z)
     top = int(abscissa.argmax())
     worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
     return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)
 
 
-def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tuple[float, float]] = ()) -> DecayCheck:
+def check_decay(
+    study: Study,
+    design: Mapping[str, float],
+    points: Sequence[tuple[float, float]] = (),
+    simulator: ExactSimulator | None = None,
+) -> DecayCheck:
     """Decay by exact simulation, on twice as many speeds as the optimiser has looked at, and refined at the worst.
 
     Parameters
@@ -86,6 +93,8 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
         Design variables by name [SI].
     points : sequence of (speed, load)
         Where to look besides [m/s], [N].
+    simulator : ExactSimulator or None
+        Of the study, if it is at hand.
 
     Returns
     -------
@@ -94,14 +103,14 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
     """
     required, envelope = study.required.decay, study.envelope
     assert required is not None
-    simulator, made = ExactSimulator(study, design), 0
+    run, made = (simulator or ExactSimulator(study)).with_design(design), 0
 
     peaks = dict.fromkeys(PEAKS, 0.0)
 
     def ratio(speed: float, load: float) -> float:
         nonlocal made
         made += 1
-        found, motion = _exact_ratio(simulator, speed, load)
+        found, motion = _exact_ratio(run, speed, load)
         for name in PEAKS:
             peaks[name] = max(peaks[name], float(np.abs(motion[name]).max()))
         return found

@@ -54,6 +54,10 @@ class LinearGear:
     matrices: Callable[[Any, Any], np.ndarray]
     state_names: tuple[str, ...]
 
+    def index(self, name: str) -> int:
+        """Position of a state by its name."""
+        return self.state_names.index(name)
+
     def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
         """Spectral abscissa [1/s], (m,)."""
         return spectral_abscissa(self.matrices(speeds, loads))

@@ -39,7 +39,7 @@ EVEN_IF_SLOW = 20.0
 YAW = ("yaw_angle", "yaw_rate")
 
 
-def yaw_frequency(state_matrix: np.ndarray, state_names: Sequence[str] = YAW) -> float:
+def yaw_frequency(state_matrix: np.ndarray, state_names: Sequence[str]) -> float:
     """Circular frequency [rad/s] of the yaw angle with all else at rest, at least `CREEPING`."""
     angle, rate = (state_names.index(name) for name in YAW)
     return math.sqrt(max(-state_matrix[rate, angle], CREEPING**2))
@@ -50,13 +50,13 @@ def fastest_rate(state_matrix: np.ndarray) -> float:
     return float(max(np.abs(np.linalg.eigvals(state_matrix).imag).max(), EVEN_IF_SLOW))
 
 
-def slowest_rate(state_matrix: np.ndarray, state_names: Sequence[str] = YAW) -> float:
+def slowest_rate(state_matrix: np.ndarray, state_names: Sequence[str]) -> float:
     """Least circular frequency [rad/s] of the modes that oscillate, and of the yaw angle alone: what a cycle may last."""
     rates = np.abs(np.linalg.eigvals(state_matrix).imag)
     return float(min([yaw_frequency(state_matrix, state_names), *rates[rates > CREEPING]]))
 
 
-def latest_count(state_matrix: np.ndarray, cycles: int, state_names: Sequence[str] = YAW) -> float:
+def latest_count(state_matrix: np.ndarray, cycles: int, state_names: Sequence[str]) -> float:
     """Time [s] from which the decay is taken at the latest: twice m periods of the yaw mode with all else at rest."""
     return 2 * cycles * 2 * math.pi / yaw_frequency(state_matrix, state_names)
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..motion.exact import ExactSimulator
-from ..motion.measure import PEAKS, decay, latest_count, loads_of
+from ..motion.measure import PEAKS, decay, fastest_rate, latest_count, loads_of, slowest_rate
 from ..motion.trajectory import Trajectory
 from ..results import DecayCheck, OperatingPoint
 from ..stability.linear import LinearModel
@@ -139,12 +139,11 @@ def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[
     required = simulator.study.required.decay
     assert required is not None
     A = simulator.gear.matrices(speed, load)[0]
-    rates = np.abs(np.linalg.eigvals(A).imag)
-    slowest = min([math.sqrt(max(-A[1, 0], 1.0)), *rates[rates > 1.0]])
-    latest = latest_count(A, required.cycles)
-    duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest
+    names = simulator.state_names
+    latest = latest_count(A, required.cycles, names)
+    duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest_rate(A, names)
     while True:
-        points = math.ceil(duration * max(rates.max(), 20.0) / (2 * math.pi) * PER_CYCLE)
+        points = math.ceil(duration * fastest_rate(A) / (2 * math.pi) * PER_CYCLE)
         motion = simulator(speed, load, required.disturbance, duration, TOLERANCE, points)
         if motion.status == "stopped":
             return math.inf, motion

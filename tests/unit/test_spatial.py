@@ -160,7 +160,9 @@ def outputs(study, angles, rate=0.0, **design):
     found = Outputs(dae, study)
     states = np.zeros((len(dae.state_names), len(angles)))
     states[0], states[1] = angles, rate
-    return dict(zip(found.names, found(states, [(DESIGN | design)[name] for name in dae.design_names], 40.0, 150e3, 0.0), strict=True))
+    return dict(
+        zip(found.names, found(states, [(DESIGN | design)[name] for name in dae.design_names], 40.0, 150e3, 0.0), strict=True)
+    )
 
 
 def number(expression):

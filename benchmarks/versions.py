@@ -12,6 +12,8 @@ import argparse
 import json
 import warnings
 from collections.abc import Iterator
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -42,11 +44,9 @@ SHARED = {"half_contact_length": 0.1, "relaxation_length": 0.3, "tread_width_mom
 
 
 def _problem(study: damperopt.Study) -> object:
-    try:
-        from damperopt.optimum.problem import DesignProblem
-    except ImportError:
-        from damperopt.optimum.problem import DesignProblem
-    return DesignProblem(study)
+    old, new = "damperopt.problem", "damperopt.optimum.problem"
+    module = import_module(old if find_spec(old) else new)
+    return module.DesignProblem(study)
 
 
 def _studies() -> Iterator[tuple[str, damperopt.Study]]:

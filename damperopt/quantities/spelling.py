@@ -11,7 +11,7 @@ LONGEST = 40
 
 _WORDS = {
     "N": "N mN daN kN MN GN lbf lb lbs klbf kip kips kgf tonf newton newtons",
-    "m": "m mm cm dm km um µm in inch inches ft foot feet yd yard yards mile miles nmi thou",
+    "m": "m metre metres meter meters mm cm dm km um µm in inch inches ft foot feet yd yard yards mile miles nmi thou",
     "kg": "kg g mg t tonne tonnes lb lbs lbm slug slugs",
     "s": "s ms sec second seconds min minute minutes h hr hour hours",
     "rad": "rad mrad radian radians deg ° degree degrees arcmin arcsec turn rev revolution revolutions grad",

@@ -14,9 +14,11 @@ from ..study.components import unit_of_name
 from ..study.study import Study, unit_of
 from ..symbols import data_names, data_values
 
-__all__ = ["Axis", "Plane", "quantity_name", "unit_of_quantity"]
+__all__ = ["OPERATING", "Axis", "Plane", "quantity_name", "unit_of_quantity"]
 
 OPERATING = {"speed": "m/s", "vertical_load": "N"}
+"""Quantities of the operating point, which no design can choose."""
+
 BATCH = 20_000
 """Matrices that are in memory at once."""
 

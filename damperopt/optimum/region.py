@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..stability.screening import least_conditions, linear_decay, worst_abscissae_of
+from ..stability.screening import SPEEDS, least_conditions, linear_decay, worst_abscissae, worst_abscissae_of
 from ..study.study import Study
 from .problem import DesignProblem
 
@@ -30,7 +30,8 @@ class FeasibleRegion:
     mass : ndarray
         (k, m) [kg].
     stability : ndarray
-        (k, m) least stability condition over the speeds and loads looked at, scaled; > 0 where the margin holds.
+        (k, m) over the speeds and loads looked at > 0 where the margin holds: beside its limit how far the spectral abscissa is
+        from it [1/s], elsewhere the least stability condition, scaled.
     violated : dict of str to ndarray
         Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
     design : dict
@@ -83,6 +84,9 @@ def feasible_region(
     k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
     if problem.plain:
         stability = least_conditions(study, k_psi, c_psi, worst)
+        near = _beside_the_limit(stability.reshape(X.shape)).ravel()
+        abscissae = worst_abscissae(study, k_psi[near], c_psi[near], worst, SPEEDS)
+        stability[near] = -study.required.stability_margin - abscissae  # even enough for a curve between the nodes
     else:
         stability = -study.required.stability_margin - worst_abscissae_of(study, designs, worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
@@ -90,5 +94,17 @@ def feasible_region(
     if decay is not None:
         ratio = np.full(X.size, np.inf)
         ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
-        rows["decay_ratio"] = np.log(ratio / decay.ratio).reshape(X.shape)
+        rows["decay_ratio"] = np.log(np.maximum(ratio, 1e-12) / decay.ratio).reshape(X.shape)
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))
+
+
+def _beside_the_limit(values: np.ndarray) -> np.ndarray:
+    """Corners (k, m) of the cells in which values change their sign."""
+    kept = values > 0
+    corners = [kept[:-1, :-1], kept[:-1, 1:], kept[1:, :-1], kept[1:, 1:]]
+    mixed = np.any(corners, axis=0) & ~np.all(corners, axis=0)
+    beside = np.zeros(values.shape, bool)
+    for rows in (slice(None, -1), slice(1, None)):
+        for columns in (slice(None, -1), slice(1, None)):
+            beside[rows, columns] |= mixed
+    return beside

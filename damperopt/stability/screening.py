@@ -17,9 +17,11 @@ from ..symbols import data_values
 from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .linear import LinearModel, linear_gear, spectral_abscissa
 
-__all__ = ["least_conditions", "linear_decay", "worst_abscissae", "worst_abscissae_of"]
+__all__ = ["SPEEDS", "least_conditions", "linear_decay", "worst_abscissae", "worst_abscissae_of"]
 
 SPEEDS = 24
+"""Speeds of the envelope that are looked at, at each load."""
+
 DECAY_SPEEDS, PER_CYCLE = 5, 14  # a look at decay, to choose starts
 STIFFNESS, DAMPING = 1e5, 1e3  # of the second and third matrix; any numbers of the right size
 
@@ -54,7 +56,13 @@ def least_conditions(
     return least
 
 
-def worst_abscissae(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.ndarray:
+def worst_abscissae(
+    study: Study,
+    k_psi: np.ndarray,
+    c_psi: np.ndarray,
+    more: Sequence[tuple[float, float]] = (),
+    speeds: int = SPEEDS // 3,
+) -> np.ndarray:
     """Largest spectral abscissa of each (k_psi, c_psi) over a few points of the envelope.
 
     Parameters
@@ -62,13 +70,17 @@ def worst_abscissae(study: Study, k_psi: np.ndarray, c_psi: np.ndarray) -> np.nd
     study : Study
     k_psi, c_psi : ndarray
         (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
+    more : sequence of (speed, load)
+        Points to look at besides the speeds at each load [m/s], [N].
+    speeds : int
+        How many.
 
     Returns
     -------
     ndarray
         (m,) [1/s]
     """
-    V, F_z = _points(study, SPEEDS // 3)
+    V, F_z = _points(study, speeds, more)
     base, per_k, per_c = _affine_matrices(study, V, F_z)
     worst = np.full(k_psi.size, -np.inf)
     for j in range(V.size):

@@ -14,9 +14,10 @@ import pytest
 import yaml
 
 import damperopt
-from damperopt.study.requirements import MassModel, Requirements
-from damperopt.study.study import Gear
-from damperopt.study.variables import Solver
+from damperopt.gears.yaw_bending import YawBending
+from damperopt.study.mass_model import MassModel
+from damperopt.study.requirements import Requirements
+from damperopt.study.solver import Solver
 
 pytestmark = pytest.mark.slow
 
@@ -82,6 +83,8 @@ def test_several_combinations_are_ranked_in_one_table(configs, tmp_path):
         cwd=tmp_path,
     )
     assert done.returncode == 0, done.stderr
+    best = damperopt.load_result(tmp_path / "out")  # as analyse --design reads it
+    assert best == damperopt.load_result(next((tmp_path / "out").glob("01-*")))
     with open(tmp_path / "out" / "ranking.csv") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 6
@@ -196,7 +199,7 @@ def test_schema_accepts_every_shipped_study_and_refuses_unknown_keys(configs, tm
 
 def test_starter_shows_every_key_with_its_default():
     starter = Path(damperopt.__file__).with_name("starter.yaml").read_text()
-    for record in (MassModel, Solver, Requirements, Gear):
+    for record in (MassModel, Solver, Requirements, YawBending):
         for key in record.model_fields:
             assert f"{key}:" in starter, key
 

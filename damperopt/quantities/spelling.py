@@ -148,9 +148,9 @@ def _form(unit: str) -> str:
     over, _, under = unit.partition("/")
     above, below = ([_factor(word) for word in part.split() if word != "1"] for part in (over, under))
     needed = "".join(f"(?=[^/]*?{word})" for word in above) if len(above) > 1 else ""
-    top = rf"{needed}(?:(?:{'|'.join(above)})[\s*·.-]*)+" if above else r"(?:1\s*)?"
+    top = rf"{needed}(?:(?:{'|'.join(above)})[\s*·.-]*){{1,6}}" if above else r"(?:1\s*)?"
     if not below:
-        return top
+        return top  # a bounded number of words: mm and m m would else be told apart for ever in a long text
     powers = "|".join(_factor(word, -1) for word in under.split())
     bottom = rf"(?:\s*(?:/|per\s)\s*\(?\s*(?:{'|'.join(below)})\)?|[\s*·.-]*(?:{powers}))"
     # a torque per angle is a torque where radians go without saying

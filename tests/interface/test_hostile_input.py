@@ -29,7 +29,7 @@ NO_LENGTHS = {
     "overflow with a unit": ("1e99999999999999999999 m", "not a finite number"),
     "400 digits": (NINES, "400 characters"),
     "5000 digits": ("9" * 5000, "5000 characters"),
-    "400 digits with a unit": (f"{NINES} m", "more digits"),
+    "400 digits with a unit": (f"{NINES} m", "more characters"),
     "digits of another script": ("١٢", "digits are 0 to 9"),
     "digits of another script with a unit": ("'١٢ m'", "digits are 0 to 9"),
     "another minus": ("−0.1 m", "write the sign as -"),
@@ -216,13 +216,10 @@ def test_a_result_with_endless_digits_makes_no_study(main_gear):
             main_gear.replace(material__youngs_modulus=value)
 
 
-@pytest.mark.parametrize("path", ["name__x", "design__L__start__min__x", "envelope__vertical_load__0", "gear__yaw_inertia__x"])
+@pytest.mark.parametrize("path", ["name__x", "design__L__start__x", "envelope__vertical_load__0", "gear__yaw_inertia__x__y"])
 def test_changes_lead_through_blocks_only(path, main_gear):
-    study = main_gear.replace(design__L__start=0.5)
-    if path.startswith("design"):
-        study, path = main_gear, "design__L__start__x__y"
-    with pytest.raises(damperopt.ConfigError, match=r"has no keys; allowed: a new value of|found a mapping"):
-        study.replace(**{path: 1})
+    with pytest.raises(damperopt.ConfigError, match=r"has no keys; allowed: a new value of"):
+        main_gear.replace(**{path: 1})
 
 
 @pytest.mark.parametrize("name", ["a\0b", "\ud800", "a\x1b[31m", ""])
@@ -239,7 +236,8 @@ def test_names_given_in_python_are_printable(name, main_gear):
         (["--speed", "١٢", "--kick", "yaw=1"], "digits are 0 to 9"),
         (["--speed", "1_0", "--kick", "yaw=1"], "underscores"),
         (["--speed", "40", "--release", "yaw=1e-400"], "would become 0"),
-        (["--speed", "40", "--release", "yaw=" + "9" * 50_000], "more digits"),
+        (["--speed", "1 a" + " " * 50_000 + "b", "--kick", "yaw=1"], "more characters"),
+        (["--speed", "40", "--release", "yaw=" + "9" * 50_000], "more characters"),
     ],
 )
 def test_arguments_are_read_as_strictly_as_files(arguments, says, configs):

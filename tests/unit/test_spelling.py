@@ -87,3 +87,7 @@ def test_plain_numbers_of_the_command_line(text):
 @pytest.mark.parametrize("text", ["1_0", "010", "nan", "inf", "infinity", "١", "1e400", "1e-400", "0x1", "1" * 100, "", "1 m"])
 def test_no_plain_numbers(text):
     assert number(text) is None
+
+
+def test_the_pattern_gives_up_soon_on_a_long_text():
+    assert not re.search(text_pattern("N m/rad"), "5 " + "m" * 2000 + "!")

@@ -378,5 +378,5 @@ def load_result(path: str | Path) -> DesignResult:
 def _is_folder(path: Path) -> bool:
     try:
         return path.is_dir()
-    except ValueError:  # a zero byte in the path: refused where it is read
+    except (ValueError, OSError):  # a zero byte in the path, a name too long: refused where it is read
         return False

@@ -27,10 +27,10 @@ def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("st
         with open(path, "x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
-        raise OutputError(f"{path}: exists already; choose another name") from None
+        raise OutputError(f"{printable(path)}: exists already; choose another name") from None
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another place") from error
-    out.print(f"{path} written; next: damperopt optimise {path}", soft_wrap=True, markup=False)
+        raise OutputError(f"{printable(path)}: cannot be written: {error.strerror}; choose another place") from error
+    out.print(f"{printable(path)} written; next: damperopt optimise {printable(path)}", soft_wrap=True, markup=False)
 
 
 def schema(sweep: Annotated[bool, typer.Option("--sweep", help="Of a sweep instead of a study.")] = False) -> None:

@@ -11,7 +11,7 @@ LONGEST = 40
 
 _WORDS = {
     "N": "N mN daN kN MN GN lbf lb lbs klbf kip kips kgf tonf newton newtons",
-    "m": "m mm cm dm km um µm in inch inches ft foot feet yd yard yards mile miles nmi thou",
+    "m": "m metre metres meter meters mm cm dm km um µm in inch inches ft foot feet yd yard yards mile miles nmi thou",
     "kg": "kg g mg t tonne tonnes lb lbs lbm slug slugs",
     "s": "s ms sec second seconds min minute minutes h hr hour hours",
     "rad": "rad mrad radian radians deg ° degree degrees arcmin arcsec turn rev revolution revolutions grad",
@@ -148,9 +148,9 @@ def _form(unit: str) -> str:
     over, _, under = unit.partition("/")
     above, below = ([_factor(word) for word in part.split() if word != "1"] for part in (over, under))
     needed = "".join(f"(?=[^/]*?{word})" for word in above) if len(above) > 1 else ""
-    top = rf"{needed}(?:(?:{'|'.join(above)})[\s*·.-]*)+" if above else r"(?:1\s*)?"
+    top = rf"{needed}(?:(?:{'|'.join(above)})[\s*·.-]*){{1,6}}" if above else r"(?:1\s*)?"
     if not below:
-        return top
+        return top  # a bounded number of words: mm and m m would else be told apart for ever in a long text
     powers = "|".join(_factor(word, -1) for word in under.split())
     bottom = rf"(?:\s*(?:/|per\s)\s*\(?\s*(?:{'|'.join(below)})\)?|[\s*·.-]*(?:{powers}))"
     # a torque per angle is a torque where radians go without saying

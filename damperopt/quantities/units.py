@@ -20,6 +20,7 @@ _DIGITS = r"(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)"
 _NUMBER = re.compile(rf"([-+]?{_DIGITS})(?:[eE]([-+]?[0-9]+))?")
 _NUMBER_AND_UNIT = re.compile(rf"\s*({_NUMBER.pattern})\s*(.*?)\s*", re.DOTALL)
 _LONGEST_NUMBER = 60
+_LONGEST_TEXT = 200
 
 _SIZES = {
     "m": (1e-7, 1e4),
@@ -247,6 +248,8 @@ class Quantity:
                 return float(found)
             except OverflowError:
                 self._refuse(f"{quoted(found)} is beyond any landing gear")
+        if len(found) > _LONGEST_TEXT:
+            self._refuse(f"{quoted(found)} has more characters than any number with a unit")
         match = _NUMBER_AND_UNIT.fullmatch(found)
         if not match or re.match(r"[,_:'\u2019]|\d(?!(?<=1)\s*/)", match[4]):
             self._refuse(f"{quoted(found)} is not a number with a unit" + self._about_digits(found))

@@ -78,6 +78,8 @@ class Material(Record):
             if data not in MATERIALS:
                 raise refuse("", f"{quoted(data)} is no known material", ", ".join(MATERIALS) + ", or the numbers as a mapping")
             return {"name": data, **MATERIALS[data]}
+        if not isinstance(data, (dict, Material)):
+            raise refuse("", f"found {quoted(data)}", ", ".join(MATERIALS) + ", or the numbers as a mapping")
         return data
 
     @model_validator(mode="after")

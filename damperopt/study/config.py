@@ -180,14 +180,15 @@ def _what(problem: Any, path: tuple, model: type[BaseModel]) -> str:
         return f"missing key; allowed: {_allowed_at(path, model)}"
     if kind == "extra_forbidden":
         siblings = _keys_at(path[:-1], model)
+        if path[-1] in siblings:
+            return "belongs to another kind of this block; allowed: the keys of the kind that the block names"
         close = difflib.get_close_matches(str(path[-1]), siblings, n=1)
         hint = f" (did you mean '{close[0]}'?)" if close else ""
         return f"unknown key{hint}; allowed: {', '.join(siblings) or 'none'}"
     if kind == "literal_error":
         return f"{found} is not one of the choices; allowed: {context['expected']}"
-    if kind in ("union_tag_invalid", "union_tag_not_found"):
-        tags = "'nonlinear', 'linear', 'straight_tangent'"
-        return f"{'missing' if kind.endswith('found') else quoted(context.get('tag'))} tyre law; allowed: law: {tags}"
+    if kind in ("union_tag_invalid", "union_tag_not_found") and not isinstance(problem.get("input"), dict):
+        return f"found {found} instead of a block; allowed: {_allowed_at(path, model)}"
     if kind.startswith("model_") or kind == "dict_type":
         return f"found {found} instead of a block; allowed: {_allowed_at(path, model)}"
     if kind == "list_type":

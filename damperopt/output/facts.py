@@ -129,7 +129,8 @@ def _event(study: Study, result: DesignResult) -> LimitEvent | None:
         return None
     reach = study.damper.linkage(result.design, study.material.youngs_modulus).reach
     return LimitEvent(
-        *(peaks[name] for name in ("linkage_torque", "yaw_angle")),
+        torque=peaks["linkage_torque"],
+        yaw=peaks["yaw_angle"],
         yaw_rate=math.nan,
         stroke=peaks["damper_stroke"],
         damper_force=peaks["damper_force"],

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import ConfigError
+from ..stability.linear import LinearModel
 from ..study.study import Study
 from .explicit import boundary as joint_lines
 from .explicit import joint_of
-from .plane import OPERATING, Axis, Plane, quantity_name
+from .plane import OPERATING, Axis, Plane, Tally, quantity_name
 from .tracing import Polyline, trace
 
 __all__ = ["Curve", "Family", "StabilityChart", "chart"]
@@ -199,7 +200,7 @@ def chart(
     values = {**study.start, **(design or {})}
     speed = study.envelope.speed.max if speed is None else speed
     load = max(study.envelope.loads) if load is None else load
-    plane = plane_type(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin)
+    plane = plane_type(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin, model=LinearModel(study))
     varied: Axis | None = None
     families: list[float | None] = [None] if vary is None else list(vary[1])
     if vary is not None:
@@ -213,7 +214,7 @@ def chart(
     made = []
     for value in families:
         fixed = {} if varied is None or value is None else {varied.name: float(value)}
-        here = replace(plane, fixed=fixed, evaluations=0)
+        here = replace(plane, fixed=fixed, tally=Tally())
         joint = joint_of(here)
         lines = None if joint is None else joint_lines(here, joint, tolerance)
         family = None if lines is None else _family(here, value, mark, lines, tolerance, explicit=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
-from ..motion.decay import decay_analysis
+from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
 from ..motion.trajectory import Trajectory
 from ..optimum.region import FeasibleRegion, feasible_region
@@ -141,7 +141,7 @@ def _charts(answer: Answer) -> tuple[StabilityChart, StabilityChart | None]:
 
 
 def _region(answer: Answer) -> FeasibleRegion:
-    return feasible_region(answer.study, answer.result.design, [answer.worst])
+    return feasible_region(answer.study, answer.result.design, [answer.worst], limit_event=answer.result.limit_event)
 
 
 def _decay(answer: Answer) -> tuple[Trajectory, np.ndarray, np.ndarray]:
@@ -150,7 +150,7 @@ def _decay(answer: Answer) -> tuple[Trajectory, np.ndarray, np.ndarray]:
     required, check = study.required.decay, answer.result.decay
     assert required is not None
     assert check is not None
-    analysis = decay_analysis(study)
+    analysis = DecayAnalysis(study)
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
     ratios = [analysis.at(design, float(speed), check.load).ratio for speed in speeds]

@@ -20,8 +20,11 @@ class Section(Record):
     """
 
     family: Literal["solid_round", "tube", "rectangle", "i_section"] = "tube"
+    """Shape; a tube takes thickness_ratio, a rectangle aspect_ratio, an i_section both."""
     thickness_ratio: Annotated[float, Quantity("1", above=0, below=0.5)] | None = None
+    """Wall over outer diameter, or flange and web over height [1]."""
     aspect_ratio: Number | None = None
+    """Height over width [1]."""
 
     @model_validator(mode="after")
     def _shape(self) -> Self:

@@ -35,7 +35,9 @@ Q: TypeAlias = flint.fmpq
 MAX_BOXES = 20_000
 
 
-def certify(study: Study, design: Mapping[str, float], margin: float | None = None) -> Certificate:
+def certify(
+    study: Study, design: Mapping[str, float], margin: float | None = None, model: LinearModel | None = None
+) -> Certificate:
     """Prove that a design keeps the stability margin over the whole envelope, or say where it does not.
 
     Parameters
@@ -45,6 +47,8 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
         Design variables by name [SI]; taken at their exact binary values.
     margin : float or None
         Stability margin [1/s]; None: the study's own (0 if it has no requirements).
+    model : LinearModel or None
+        Of the study, if it is at hand.
 
     Returns
     -------
@@ -59,7 +63,7 @@ def certify(study: Study, design: Mapping[str, float], margin: float | None = No
         margin = study.required.stability_margin if study.requirements else 0.0
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
-    family = _Family(study, design, margin)
+    family = _Family(study, design, margin, model or LinearModel(study))
     method = "bernstein" if envelope.load_is_range else "sturm"
 
     def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
@@ -98,8 +102,7 @@ def _place(point: tuple[float, float]) -> str:
 class _Family:
     """A(V, F) + sigma 1 of one design as exact functions of speed and load."""
 
-    def __init__(self, study: Study, design: Mapping[str, float], margin: float):
-        model = LinearModel(study)
+    def __init__(self, study: Study, design: Mapping[str, float], margin: float, model: LinearModel):
         self._gear, self._margin, self._n = model.at(design), margin, len(model.state_names)
         values = [rational(design[name]) for name in model.design_names]
         data = [rational(value) for value in data_values(study)]

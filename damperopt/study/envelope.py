@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import BeforeValidator, Discriminator, Tag, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Discriminator, Tag, TypeAdapter, WithJsonSchema, model_validator
 
 from ..quantities.record import Force, LoadRange, Record, SpeedRange, refuse
 
 __all__ = ["Envelope"]
 
 
+_LOAD = TypeAdapter(Force).json_schema()
+
+
 class Envelope(Record):
     """Where the gear must be stable: every speed of a range, at one load, a list of loads, or a range of loads."""
 
     speed: SpeedRange
+    """Every speed between the two is proved."""
     vertical_load: Annotated[
         Annotated[LoadRange, Tag("LoadRange")] | Annotated[list[Force], Tag("list")],
         Discriminator(lambda data: "LoadRange" if isinstance(data, (dict, LoadRange)) else "list"),
@@ -22,18 +26,20 @@ class Envelope(Record):
         WithJsonSchema(
             {
                 "anyOf": [
-                    {"type": ["number", "string"], "description": "[N]"},
-                    {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 1},
+                    *_LOAD["anyOf"],
+                    {"type": "array", "items": _LOAD, "minItems": 1},
                     {
                         "type": "object",
-                        "properties": {"min": {"type": ["number", "string"]}, "max": {"type": ["number", "string"]}},
+                        "properties": {"min": _LOAD, "max": _LOAD},
                         "required": ["min", "max"],
                         "additionalProperties": False,
                     },
-                ]
+                ],
+                "$comment": "[N] a load such as '150 kN', a list of loads, or a range {min, max}",
             }
         ),
     ]
+    """Vertical load on the gear: one, a list, or a range."""
 
     @model_validator(mode="after")
     def _some_load(self) -> Self:

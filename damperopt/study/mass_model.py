@@ -20,8 +20,11 @@ class MassModel(Record):
     """Numbers of the mass model; the defaults suit a main gear and are explained in the documentation."""
 
     arm_section: Section = _TUBE
+    """Cross-section of the bending arm."""
     link_section: Section = _TUBE
+    """Cross-section of the torque links."""
     support_section: Section = _TUBE
+    """Cross-section of the support arm."""
     cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
     """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
     link_fittings_fraction: Fraction = 0.2
@@ -37,7 +40,9 @@ class MassModel(Record):
     least_rod_diameter: Length = 0.012
     """Thinnest rod that is made [m]."""
     rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
+    """Euler load of the rod over the largest damper force, at least [1]."""
     oil_density: Density = 860.0
+    """Of the damper fluid [kg/m^3]."""
     damper_fittings_fraction: Fraction = 0.5
     """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
     spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import fractions
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
@@ -19,19 +19,23 @@ from ..quantities.record import (
     refuse,
 )
 from ..quantities.units import Quantity
+from ..reading import quoted
 from .disturbances import Disturbance, Kick, Release
 
 __all__ = ["DecayRequirement", "Fatigue", "Requirements"]
+
+
+_FRACTION = re.compile(r"\s*(0|[1-9][0-9]{0,8})\s*/\s*([1-9][0-9]{0,8})\s*")
 
 
 def _fraction(found: Any) -> Any:
     """1/3 as a number; everything else as it is."""
     if not isinstance(found, str) or "/" not in found:
         return found
-    try:
-        return float(fractions.Fraction(found.replace(" ", "")))
-    except (ValueError, ZeroDivisionError):
-        raise refuse("", f"'{found}' is no fraction", "a number such as 0.3, or a fraction such as 1/3") from None
+    parts = _FRACTION.fullmatch(found)
+    if not parts:
+        raise refuse("", f"{quoted(found)} is no fraction", "a number such as 0.3, or a fraction such as 1/3")
+    return int(parts[1]) / int(parts[2])
 
 
 _Ratio = Annotated[
@@ -42,7 +46,7 @@ _Ratio = Annotated[
         {
             "anyOf": [
                 {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-                {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*0*[1-9][0-9]*\s*$"},
+                {"type": "string", "pattern": r"^\s*(0|[1-9][0-9]{0,8})\s*/\s*[1-9][0-9]{0,8}\s*$"},
             ]
         }
     ),
@@ -53,16 +57,22 @@ class Fatigue(Record):
     """Fatigue life of the bending arm: `cycles` at `stress_fraction` of the limit-event stress (Basquin)."""
 
     stress_fraction: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.5
+    """Amplitude of the repeated stress, as a part of that of the limit event [1]."""
     cycles: Annotated[float, Quantity("1", at_least=1)] = 1e6
+    """Cycles to be survived [1]."""
 
 
 class DecayRequirement(Record):
     """|yaw| <= `ratio` times its first extremum at all times after `cycles` cycles that follow a disturbance."""
 
     ratio: _Ratio = 1 / 3
+    """Of |yaw| to its first extremum, allowed after the cycles [1]."""
     cycles: Annotated[int, Field(strict=True, ge=1, le=100)] = 3
+    """Cycles that follow the disturbance."""
     release: Release | None = None
+    """The gear is let go from an angle; this or a kick."""
     kick: Kick | None = None
+    """The gear starts with a rate; this or a release."""
     speeds: list[Speed] | None = None
     """Speeds to look at [m/s]; left out: the worst of the envelope is sought."""
 
@@ -93,9 +103,11 @@ class Requirements(Record):
     limit_torque: Torque | None = None
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5
+    """Limit torque over the peak that the tyre can make, where no limit_torque is given [1]."""
     safety_factor: Annotated[float, Quantity("1", at_least=1)] = 1.5
     """On yield strength at the limit event."""
     fatigue: Fatigue = Fatigue()
+    """Fatigue of the bending arm."""
     apex_clearance: Length = 0.127e-3
     """Free clearance at the apex joint [m]; 0.127 mm is the figure of a 737."""
     stroke_ratio: Number = 10.0

@@ -18,6 +18,7 @@ class Solver(Record):
     starts: Annotated[int, Field(strict=True, ge=1, le=4096)] = 16
     """Starting points: the config's own and Sobol points within the bounds."""
     seed: Annotated[int, Field(strict=True, ge=0)] = 1
+    """Of the Sobol points; the same seed gives the same starts."""
     tolerance: Annotated[float, Quantity("1", above=0, at_most=1e-4)] = 1e-8
     """Of IPOPT, in scaled variables."""
     margin_reserve: Annotated[float, Quantity("1/s", above=0, at_most=0.1)] = 1e-6
@@ -31,3 +32,4 @@ class Solver(Record):
     decay_speeds: Annotated[int, Field(strict=True, ge=2, le=1000)] = 16
     """Speeds of the search for the worst decay; twice as many verify the result."""
     verification_speeds: Annotated[int, Field(strict=True, ge=2, le=1_000_000)] = 2000
+    """Speeds of the grid on which eigenvalues are checked at the end."""

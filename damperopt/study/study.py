@@ -10,12 +10,14 @@ from html import escape
 from typing import Any, Self
 
 import yaml
-from pydantic import BaseModel, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
 from ..errors import ConfigError
 from ..quantities.named import DesignVariable
-from ..quantities.record import Record, quantity_of, refuse
+from ..quantities.record import Name, Record, quantity_of, refuse
+from ..reading import printable
 from ..strength.materials import Material
+from .changes import changed
 from .components import DAMPER, GEAR, TYRE
 from .envelope import Envelope
 from .mass_model import MassModel
@@ -29,16 +31,26 @@ __all__ = ["Study", "unit_of"]
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
 
-    name: str
+    name: Name
+    """Of the study; folders and figures carry it."""
     gear: GEAR
+    """What moves: inertias, lengths, bending."""
     tyre: TYRE
+    """How the ground acts on the wheel: a slip law and a contact line."""
     damper: DAMPER
+    """Layout of the shimmy damper, and its kind."""
     material: Material = Material.model_validate("AISI 4340")
+    """Of links, bending arm and support arm: a name of the library, or the numbers."""
     envelope: Envelope
+    """Speeds and loads at which the requirements hold."""
     requirements: Requirements | None = None
+    """What a design must meet; needed where there is something to design."""
     design: Design = Design()
+    """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()
+    """Numbers of the mass model."""
     solver: Solver = Solver()
+    """Numbers of the solution method."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -122,14 +134,7 @@ class Study(Record):
         data = self.model_dump(exclude_none=True)
         if "gear__order" in changes:  # an older way to name the kind, which would contradict it
             data["gear"].pop("kind")
-        for path, value in changes.items():
-            *parents, leaf = path.split("__")
-            block = data
-            for key in parents:
-                if block.get(key) is None:
-                    block[key] = {}
-                block = block[key]
-            block[leaf] = value.model_dump() if isinstance(value, BaseModel) else value
+        data = changed(data, {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)
         except ValidationError as error:
@@ -137,9 +142,12 @@ class Study(Record):
 
 
 def _problem_in_words(problem: Any) -> str:
-    path = [*problem["loc"], *filter(None, [problem.get("ctx", {}).get("key")])]
+    path = [
+        *(step for step in problem["loc"] if not str(step).startswith("<")),
+        *filter(None, [problem.get("ctx", {}).get("key")]),
+    ]
     what = "unknown key" if problem["type"] == "extra_forbidden" else problem["msg"]
-    return f"{'.'.join(map(str, path))}: {what}"
+    return f"{printable('.'.join(map(str, path)))}: {what}"
 
 
 def unit_of(study: Study, path: str) -> str:

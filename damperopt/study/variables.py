@@ -19,8 +19,11 @@ class Variable(Record):
     """A design variable: start, min and max, or a single number, which fixes it."""
 
     start: float
+    """Where the search begins."""
     min: float
+    """Least that is allowed."""
     max: float
+    """Most that is allowed."""
 
     @model_validator(mode="before")
     @classmethod

@@ -14,7 +14,7 @@ LINEAR_TYRE = {
 """Tyre of thesis Table 0.1 (slope 7 C_F), linear."""
 
 STRAIGHT_TANGENT_TYRE = {
-    "law": "straight_tangent",
+    "law": "stiffness",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "tread_width_moment": 570.0,

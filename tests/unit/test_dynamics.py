@@ -1,7 +1,5 @@
 """Equations of motion: the composed model against the basic twin, its linearisation, signs and symmetry."""
 
-from types import SimpleNamespace
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -16,6 +14,7 @@ from basic_twin import (
     right_hand_side,
     state_matrix,
 )
+from components_of import TWIN_LAWS, gear_of
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
@@ -51,7 +50,7 @@ TYRES = {
         "aligning_coefficient": 0.5,
     },
     "straight_tangent": {
-        "law": "straight_tangent",
+        "law": "stiffness",
         "half_contact_length": 0.1,
         "relaxation_length": 0.4,
         "cornering_stiffness": 4.0e5,
@@ -134,9 +133,9 @@ def twin(study):
         k_psi, c_psi = planar_coefficients(damper.topology, E_STEEL, **DESIGN)
         torque = planar_torque(damper.topology, E_STEEL, **DESIGN)
     slopes = {
-        "nonlinear": ("cornering_coefficient", "aligning_coefficient"),
+        "arctangent": ("cornering_coefficient", "aligning_coefficient"),
         "linear": ("cornering_slope", "aligning_coefficient"),
-        "straight_tangent": ("cornering_stiffness", "aligning_stiffness"),
+        "stiffness": ("cornering_stiffness", "aligning_stiffness"),
     }[tyre.law]
     return parameters(
         I_z=gear.yaw_inertia,
@@ -150,7 +149,7 @@ def twin(study):
         a=tyre.half_contact_length,
         sigma=tyre.relaxation_length,
         kappa=tyre.tread_width_moment,
-        law=tyre.law,
+        law=TWIN_LAWS[tyre.law],
         C_F=getattr(tyre, slopes[0]),
         C_M=getattr(tyre, slopes[1]),
         alpha_m=getattr(tyre, "aligning_slip_limit", None),
@@ -216,10 +215,10 @@ def test_rest_is_an_equilibrium(study, order, rake):
 
 def test_effective_caster_with_rake():
     """e 0.12 m, R_w 0.362 m at 9 deg: 0.118523 + (0.362 + 0.018772) 0.158384 = 0.178831 m, by hand; the caster itself at 0."""
-    gear = SimpleNamespace(caster_length=0.12, rake_angle=np.deg2rad(9.0), wheel_radius=0.362)
-    assert dynamics.effective_caster(gear) == pytest.approx(0.178831, abs=1e-6)
+    numbers = {"kind": "yaw", "yaw_inertia": 1.0, "caster_length": 0.12, "wheel_radius": 0.362}
+    assert gear_of(**numbers, rake_angle="9 deg").lever() == pytest.approx(0.178831, abs=1e-6)
     assert effective_caster(parameters(phi=np.deg2rad(9.0))) == pytest.approx(0.178831, abs=1e-6)
-    assert dynamics.effective_caster(SimpleNamespace(caster_length=0.12, rake_angle=0.0, wheel_radius=0.362)) == 0.12
+    assert gear_of(**numbers).lever() == 0.12
 
 
 # ----------------------------------------------------------------------------------------------------------- signs

@@ -65,6 +65,9 @@ _MOVED = {
 }
 """Names that were public in 0.1 and are now reached by their room."""
 
+_ROOMS = ("figures", "sweep")
+"""Rooms with a public list of their own."""
+
 __all__ = sorted(_HOME)  # one list, not two
 
 
@@ -74,8 +77,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("damperopt")
-    if name == "sweep":
-        return import_module(".sweep", __name__)
+    if name in _ROOMS:
+        return import_module(f".{name}", __name__)
     if name in _HOME:
         return getattr(import_module(f".{_HOME[name]}", __name__), name)
     if name in _MOVED:
@@ -90,4 +93,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "__version__", "sweep"]
+    return [*__all__, "__version__", *_ROOMS]

@@ -15,7 +15,7 @@ import pytest
 from matplotlib.image import imread
 
 import damperopt
-from damperopt.output import report_of, write_report
+from damperopt.output import report_of, words, write_report
 from damperopt.output.gallery import write_design
 
 COMMAND = [sys.executable, "-c", "from damperopt.cli import main; main()", "report"]
@@ -83,6 +83,19 @@ def test_says_first_what_the_proof_covers_and_what_not(solved, page):
     for sentence in solved[1].not_checked:
         assert sentence in top
     assert "This page repeats result.json as it was found" in text
+
+
+def test_says_what_of_the_study_the_proof_leaves_out(solved):
+    study, _ = solved
+    assert len(words.covers(study)) == 1
+    loose = study.replace(
+        damper__freeplay={"gap": 1e-3}, gear__friction={"torque": 50.0}, requirements__limit_event="simulated"
+    )
+    _, left_out, event = words.covers(loose)
+    assert "freeplay and friction, which the certificate does not cover: a limit cycle can remain" in left_out
+    assert "no load of ground handling remains" in event
+    soft = study.replace(damper__link_stiffness=1e7, damper__series_stiffness=1e8)
+    assert "torque links as stiff as the study says, the damper's compliance in series" in words.covers(soft)[0]
 
 
 def test_says_loads_sizes_damping_and_the_next_critical_speed(solved, page):
@@ -190,8 +203,6 @@ def test_progress_is_shown_when_asked_for(main_gear, capsys):
 
 
 def test_a_range_of_loads_is_a_range_and_nothing_unproved_is_explained(solved):
-    from damperopt.output import words
-
     study, result = solved
     assert "at 100 to 150 kN" in words.asked(study.replace(envelope__vertical_load={"min": 100e3, "max": 150e3}))[1]
     assert "at 100, 150 kN" in words.asked(study.replace(envelope__vertical_load=[100e3, 150e3]))[1]

@@ -15,6 +15,7 @@ from ..errors import ConfigError
 from ..expressions.dae import DAE
 from ..study.study import Study
 from ..symbols import data_values, symbolic
+from .family import Powers, powers_of
 
 __all__ = ["LinearGear", "LinearModel", "linear_gear", "linearise", "spectral_abscissa"]
 
@@ -49,10 +50,13 @@ class LinearGear:
         (speeds, loads), each (m,) or scalar [m/s], [N] -> (m, n, n) state matrices.
     state_names : tuple of str
         Names of the n states.
+    powers : Powers
+        Powers of speed and load in the matrices.
     """
 
     matrices: Callable[[Any, Any], np.ndarray]
     state_names: tuple[str, ...]
+    powers: Powers = Powers()
 
     def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
         """Spectral abscissa [1/s], (m,)."""
@@ -72,6 +76,7 @@ class LinearModel:
         self.state_names = dae.state_names
         self.design_names = dae.design_names
         self.state_matrix = linearise(dae)
+        self.powers = powers_of(study)
         self._data = ca.DM(data_values(study))
 
     def at(self, design: Mapping[str, float]) -> LinearGear:
@@ -90,7 +95,7 @@ class LinearModel:
             columns = self.state_matrix(ca.repmat(values, 1, V.size), V.reshape(1, -1), F_z.reshape(1, -1), self._data)
             return columns.full().reshape(n, V.size, n).transpose(1, 0, 2)
 
-        return LinearGear(matrices, self.state_names)
+        return LinearGear(matrices, self.state_names, self.powers)
 
 
 def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> LinearGear:

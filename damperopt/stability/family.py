@@ -24,7 +24,7 @@ from scipy.linalg import eigvals, matrix_balance
 
 from ..errors import ConfigError
 
-__all__ = ["Line", "Powers", "compound", "coefficients", "powers_of"]
+__all__ = ["Line", "Powers", "coefficients", "compound", "powers_of"]
 
 KEPT = 1e-9
 """Relative to the terms of an entry: how closely the declared powers must give a matrix at points that made none of them."""
@@ -68,12 +68,13 @@ def powers_of(study: Any) -> Powers:
     """
     parts = [study.gear, study.tyre, getattr(study.tyre, "contact", None), getattr(study.tyre, "law", None), study.damper]
     speed = [getattr(part, "SPEED_POWERS", Powers.speed) for part in parts]
-    load = [getattr(part, "LOAD_POWERS", Powers.load) for part in parts]
-    polynomial = None if None in load else tuple(sorted({0, *itertools.chain(*load)}))
+    declared = [getattr(part, "LOAD_POWERS", Powers.load) for part in parts]
+    load = [powers for powers in declared if powers is not None]
+    polynomial = tuple(sorted({0, *itertools.chain(*load)})) if len(load) == len(declared) else None
     return Powers(tuple(sorted({0, *itertools.chain(*speed)})), polynomial)
 
 
-def coefficients(samples: Sequence[Any], inverse: Sequence[Sequence[Any]]) -> list[Any]:
+def coefficients(samples: Any, inverse: Any) -> list[Any]:
     """Coefficients of powers from samples, by the inverse of the matrix of powers at their points; numbers of any kind."""
     return [sum((sample * w for sample, w in zip(samples[1:], row[1:], strict=True)), samples[0] * row[0]) for row in inverse]
 

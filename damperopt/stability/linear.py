@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
@@ -56,7 +56,7 @@ class LinearGear:
 
     matrices: Callable[[Any, Any], np.ndarray]
     state_names: tuple[str, ...]
-    powers: Powers = Powers()
+    powers: Powers = field(default_factory=Powers)
 
     def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
         """Spectral abscissa [1/s], (m,)."""

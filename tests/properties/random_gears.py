@@ -168,3 +168,11 @@ def refined_maximum_2d(gear, speed, load, count=40, rounds=30):
         box = np.clip(np.array([centre - reach, centre + reach]).T, bounds[:, :1], bounds[:, 1:])
         count = 9
     return top, V, F_z
+
+
+def ends(study):
+    return study.envelope.speed.min, study.envelope.speed.max
+
+
+def eigenvalues(gear, speed, load):
+    return np.linalg.eigvals(gear.matrices(speed, load)[0])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from exact_gears import quadratic_gear
 from random_gears import (
     dense,
     eigenvalues,
@@ -10,7 +11,8 @@ from random_gears import (
     rotational,
 )
 
-from damperopt import critical_speeds, linear_gear
+from damperopt import certify, critical_speeds, linear_gear
+from damperopt.stability.critical import marginal_throughout
 
 ON_THE_LINE = 1e-10
 """Relative to the largest eigenvalue: |Re + margin| at a critical speed, a root of a bracketed function."""
@@ -169,3 +171,56 @@ def test_critical_speed_of_divergence(main_gear):
                 seen += 1
                 assert c.frequency == 0.0
     assert seen >= 3
+
+
+# roots that only seem to cross
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1000.0])
+@pytest.mark.parametrize(("caster", "half_length", "relaxation"), [(0.4, 0.1, 0.3), (0.3, 0.1, 0.2), (0.75, 0.25, 0.5)])
+def test_a_gear_that_is_marginal_at_every_speed_has_no_critical_speed(main_gear, stiffness, caster, half_length, relaxation):
+    """e = a + sigma, no damping: a pair stays on the axis. In binary 0.4 - 0.1 - 0.3 is 5.6e-17, which crosses nothing."""
+    tyre = {
+        "half_contact_length": half_length,
+        "relaxation_length": relaxation,
+        "tread_width_moment": 0.0,
+        "cornering_slope": 6.0,
+    }
+    numbers = {"order": 3, "yaw_inertia": 1.0, "caster_length": caster, "stiffness": stiffness, "damping": 0.0}
+    study = rotational(main_gear, speed=(1.0, 60.0), load=1e4, tyre=tyre, **numbers)
+    gear = linear_gear(study, {})
+    assert critical_speeds(gear, 1e4, 1.0, 60.0) == []
+    assert marginal_throughout(gear, 1e4, 1.0, 60.0)
+    certificate = certify(study, {}, 0.0)
+    assert not certificate.proved
+    assert "marginal at every speed" in certificate.reason
+    ranged = certify(study.replace(envelope__vertical_load={"min": 1e4, "max": 2e4}), {}, 0.0)
+    assert not ranged.proved
+    assert "marginal at every speed" in ranged.reason
+    # a little damping, and it is stable at every speed
+    damped = study.replace(damper__torsional_damping=1e-6)
+    assert certify(damped, {}, 0.0).proved
+    assert critical_speeds(linear_gear(damped, {}), 1e4, 1.0, 60.0) == []
+
+
+def test_a_root_that_touches_the_line_is_told_from_one_that_crosses(main_gear):
+    """M = 3 of the quadratic gear: V^2 - 2 V + 1 > 0 but at 1 m/s."""
+    gear = linear_gear(quadratic_gear(main_gear, 3.0, (0.5, 2.0)), {})
+    (found,) = critical_speeds(gear, 1.0, 0.5, 2.0)
+    assert found.touching
+    assert not found.boundary
+    assert found.speed == pytest.approx(1.0, rel=1e-6)
+    crossing = linear_gear(quadratic_gear(main_gear, 3.5, (0.25, 4.0)), {})
+    assert [c.touching for c in critical_speeds(crossing, 1.0, 0.25, 4.0)] == [False, False]
+
+
+@pytest.mark.parametrize("low", [1e-12, 1e-9, 1e-6, 1e-3])
+def test_a_root_that_tends_to_zero_with_speed_crosses_nothing_at_the_low_end(main_gear, low):
+    """The string's root, about -V/sigma, vanishes with the speed; it lies on the axis at no speed."""
+    gear = linear_gear(rotational(main_gear, order=3, damping=2000.0), {})
+    assert critical_speeds(gear, 1.5e5, low, 100.0) == []
+
+
+def test_a_critical_speed_at_an_end_of_the_range_is_kept(main_gear):
+    gear = linear_gear(quadratic_gear(main_gear, 3.5, (0.25, 4.0)), {})
+    assert [c.speed for c in critical_speeds(gear, 1.0, 0.5, 2.0)] == pytest.approx([0.5, 2.0], rel=1e-12)

@@ -25,7 +25,20 @@ MAX_BOXES = 20_000
 
 
 def zeros_in_range(condition: Any, speeds: tuple[float, float]) -> list[float]:
-    """Zeros of a polynomial in V within a closed range, counted exactly and then enclosed; [] is a proof of none."""
+    """Zeros of a polynomial in V within a closed range, counted exactly and then enclosed; [] is a proof of none.
+
+    Parameters
+    ----------
+    condition : fmpq_mpoly
+        Polynomial in (u, V, F) without u and F.
+    speeds : tuple of float
+        Ends of the range, the decimals that they are written as [m/s].
+
+    Returns
+    -------
+    list of float
+        Ascending [m/s], each to about 1e-9 of the upper end.
+    """
     low, high = decimal(speeds[0]), decimal(speeds[1])
     degree = condition.degrees()[1]
     coefficients = [Q(0)] * (degree + 1)
@@ -86,6 +99,18 @@ def zero_in_rectangle(
 
     Bernstein coefficients enclose the polynomial on a box and equal it at the corners; the box is halved until all have
     one sign. All numbers are integers (the scale of a box is positive and does not matter).
+
+    Parameters
+    ----------
+    condition : fmpq_mpoly
+        Polynomial in (u, V, F) without u.
+    speeds, loads : tuple of float
+        Ends of the rectangle, the decimals that they are written as [m/s], [N].
+
+    Returns
+    -------
+    tuple
+        (speed, load) or None, and the number of boxes examined.
     """
     whole = _bernstein(condition, speeds, loads)
     if whole[0, 0] < 0:

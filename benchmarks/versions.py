@@ -84,13 +84,14 @@ def collect(optima: bool) -> dict[str, dict[str, list[float]]]:
             motion = damperopt.simulate(
                 study, design, speed=30.0, disturbance={"release": {"yaw_angle": 0.01}}, duration=0.4, engine="cvodes"
             )
-            rows = [motion.time, *motion.states.values(), *(motion.outputs[key] for key in sorted(motion.outputs))]
+            shown = [] if "rotational" in study.damper.topology else sorted(motion.outputs)
+            rows = [motion.time, *motion.states.values(), *(motion.outputs[key] for key in shown)]
             mine["transient"] = np.concatenate([row[:: max(len(row) // 20, 1)] for row in rows]).tolist()
         if design and study.requirements is not None:
             problem = _problem(study)
-            mine["mass"] = list(problem.parts(design).values())
-            mine["constraints"] = list(problem.rows(design).values())
-            mine["values"] = [number for pair in problem.values(design).values() for number in pair]
+            mine["mass"] = [mass for _, mass in sorted(problem.parts(design).items())]
+            mine["constraints"] = [row for _, row in sorted(problem.rows(design).items())]
+            mine["values"] = [number for _, pair in sorted(problem.values(design).items()) for number in pair]
             mine["limit event"] = list(problem.limit_event(design).values())
         if "link" in name or "series" in name or "both" in name:
             continue

@@ -24,7 +24,7 @@ from .optimum.answer import (
 from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution, best_local, held_again
 from .optimum.multistart import StartOutcome, run_starts, solver_for, starting_designs
-from .optimum.problem import ROD, DesignProblem
+from .optimum.problem import DesignProblem
 from .optimum.sensitivity import sensitivities
 from .optimum.solve import NlpSolver
 from .proof.certify import certify
@@ -38,8 +38,8 @@ from .results import (
     Verification,
 )
 from .stability.worst import worst_points
+from .study.components import optimisable
 from .study.study import Study
-from .study.variables import TOPOLOGIES
 from .workers import executor
 
 __all__ = ["combinations", "optimise", "optimise_each", "rank"]
@@ -132,10 +132,10 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     ConfigError
         If the study lacks what a combination needs.
     """
-    if not topologies and study.damper.topology not in TOPOLOGIES:
+    if not topologies and study.damper.topology not in optimisable():
         raise ConfigError(
             f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
-            f"allowed: {', '.join(TOPOLOGIES)} (or use 'damperopt analyse')"
+            f"allowed: {', '.join(optimisable())} (or use 'damperopt analyse')"
         )
     variants = []
     for topology in topologies or [study.damper.topology]:
@@ -326,7 +326,7 @@ def _checked(
             "status": "failed" if failures else "solved",
             "message": message,
             "design": solution.design,
-            "derived": {**problem.yaw_numbers(solution.design), ROD: problem.rod_diameter(solution.design)},
+            "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design)},
             "limit_event": event,
             "mass": MassResult(total=mass, parts=problem.parts(solution.design)),
             "stability": worst,

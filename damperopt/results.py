@@ -11,6 +11,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .errors import ConfigError
+from .reading import MOST_RESULT_BYTES, printable, text_of
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -307,14 +308,20 @@ def load_result(path: str | Path) -> DesignResult:
         If it is no result of this schema version.
     """
     path = Path(path)
-    file = path / "result.json" if path.is_dir() else path
+    file = path / "result.json" if _is_folder(path) else path
     try:
-        return DesignResult.model_validate_json(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{file}: cannot be read: {error.strerror}; allowed: a result.json of 'optimise'") from error
-    except (ValidationError, UnicodeDecodeError) as error:
-        first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": "not UTF-8 text"}
-        key = ".".join(str(step) for step in first["loc"]) or "(file)"
+        return DesignResult.model_validate_json(text_of(file, "a result.json of 'optimise'", MOST_RESULT_BYTES))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(printable(step) for step in first["loc"]) or "(file)"
         raise ConfigError(
-            f"{file}:1: {key}: {first['msg']}; allowed: a result.json of 'optimise', schema version {SCHEMA_VERSION}"
+            f"{printable(file)}:1: {key}: {printable(first['msg'])}; "
+            f"allowed: a result.json of 'optimise', schema version {SCHEMA_VERSION}"
         ) from None
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except ValueError:  # a zero byte in the path: refused where it is read
+        return False

@@ -10,13 +10,13 @@ import numpy as np
 
 from ..errors import ConfigError
 from ..stability.linear import LinearModel, spectral_abscissa
+from ..study.components import unit_of_name
 from ..study.study import Study, unit_of
 from ..symbols import data_names, data_values
 
 __all__ = ["Axis", "Plane", "quantity_name", "unit_of_quantity"]
 
 OPERATING = {"speed": "m/s", "vertical_load": "N"}
-DESIGN_UNITS = {"c_lambda": "N s/m", "k_lambda": "N/m", "I_arm": "m^4", "L": "m", "gamma": "rad", "b": "m"}
 BATCH = 20_000
 """Matrices that are in memory at once."""
 
@@ -55,7 +55,7 @@ def quantity_name(study: Study, text: str) -> str:
 
 def unit_of_quantity(study: Study, name: str) -> str:
     """SI unit of a quantity by its full name."""
-    return OPERATING.get(name) or DESIGN_UNITS.get(name) or unit_of(study, name)
+    return OPERATING.get(name) or (unit_of_name(name) if name in study.variable_names else unit_of(study, name))
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Axis:
         unit = unit_of_quantity(study, full)
         if not -np.inf < low < high < np.inf:
             raise ConfigError(f"{name}: found the range {low:g} to {high:g}; allowed: a finite range, low < high, in {unit}")
-        lowest = 0.0 if full in (*OPERATING, *DESIGN_UNITS) else -np.inf
+        lowest = 0.0 if full in (*OPERATING, *study.variable_names) else -np.inf
         if low < lowest or (full == "speed" and low == 0):
             raise ConfigError(f"{name}: found {low:g} {unit}; allowed: {'> 0' if full == 'speed' else '>= 0'}")
         if lowest == -np.inf:

@@ -11,7 +11,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from ..charts.plane import quantity_name, unit_of_quantity
 from ..errors import ConfigError
-from ..quantities.units import Quantity
+from ..quantities.units import Quantity, number
+from ..reading import quoted
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 
@@ -54,10 +55,8 @@ def quantity(text: str, kind: Any, option: str) -> float:
 
 
 def _number_or_text(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    value = number(text)
+    return text if value is None else value
 
 
 def disturbance_of(given: Mapping[str, Sequence[str]]) -> Disturbance:
@@ -82,10 +81,10 @@ def disturbance_of(given: Mapping[str, Sequence[str]]) -> Disturbance:
         for part in (part for text in texts for part in text.split(",")):
             name, equals, value = (piece.strip() for piece in part.partition("="))
             if not equals:
-                raise ConfigError(f"--{kind}: found '{part}'; allowed: name=value, such as {_example(kind)}")
+                raise ConfigError(f"--{kind}: found {quoted(part)}; allowed: name=value, such as {_example(kind)}")
             block, key = blocks.setdefault(kind, {}), _SHORT[kind].get(name, name)
             if key in block:
-                raise ConfigError(f"--{kind}: names '{name}' twice; allowed: each once")
+                raise ConfigError(f"--{kind}: names {quoted(name)} twice; allowed: each once")
             block[key] = _number_or_text(value)
     try:
         return Disturbance.model_validate(blocks)
@@ -101,7 +100,7 @@ def _in_words(problem: Any) -> str:
     kind, *rest = (str(step) for step in problem["loc"])
     if problem["type"] == "extra_forbidden":
         names = Disturbance.model_fields[kind].annotation.__args__[0].model_fields  # type: ignore[union-attr]  # Block | None
-        return f"--{kind}: '{rest[0]}' is unknown; allowed: {', '.join(names)}"
+        return f"--{kind}: {quoted(rest[0])} is unknown; allowed: {', '.join(names)}"
     return f"--{kind}: {' '.join([*rest, problem['msg']])}"
 
 
@@ -111,12 +110,12 @@ def speed_grid(text: str, study: Study) -> np.ndarray:
         low, high = study.envelope.speed.min, study.envelope.speed.max
         return np.unique(np.linspace(low, high, 400))
     allowed = "MIN:MAX:STEP in m/s, 0 < MIN <= MAX, STEP > 0, at most 100000 speeds, such as 5:100:1"
-    try:
-        low, high, step = (float(part) for part in text.split(":"))
-    except ValueError:
-        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}") from None
+    parts = [number(part) for part in text.split(":")]
+    if len(parts) != 3 or None in parts:
+        raise ConfigError(f"--speeds: found {quoted(text)}; allowed: {allowed}")
+    low, high, step = (part for part in parts if part is not None)
     if not (0 < low <= high < math.inf and 0 < step < math.inf and (high - low) / step < 1e5):
-        raise ConfigError(f"--speeds: found '{text}'; allowed: {allowed}")
+        raise ConfigError(f"--speeds: found {quoted(text)}; allowed: {allowed}")
     count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
     return low + step * np.arange(count)
 
@@ -126,7 +125,7 @@ def axis_range(text: str, study: Study, option: str) -> tuple[str, float, float]
     name, equals, given = text.partition("=")
     low, colon, high = given.partition(":")
     if not (equals and colon):
-        raise ConfigError(f"{option}: found '{text}'; allowed: NAME=LOW:HIGH, such as c_lambda=0:2e5")
+        raise ConfigError(f"{option}: found {quoted(text)}; allowed: NAME=LOW:HIGH, such as c_lambda=0:2e5")
     return name.strip(), _in_unit(study, name.strip(), low, option), _in_unit(study, name.strip(), high, option)
 
 
@@ -134,14 +133,18 @@ def values_of(text: str, study: Study, option: str) -> tuple[str, list[float]]:
     """Name and values [SI] of ``NAME=VALUE,VALUE``, such as speed=40,80,160."""
     name, equals, given = text.partition("=")
     if not (equals and given.strip()):
-        raise ConfigError(f"{option}: found '{text}'; allowed: NAME=VALUE,VALUE, such as speed=40,80,160")
+        raise ConfigError(f"{option}: found {quoted(text)}; allowed: NAME=VALUE,VALUE, such as speed=40,80,160")
     values = [_in_unit(study, name.strip(), part, option) for part in given.split(",")]
     if len(set(values)) < len(values):
-        raise ConfigError(f"{option}: found '{text}', a value twice; allowed: different values")
+        raise ConfigError(f"{option}: found {quoted(text)}, a value twice; allowed: different values")
     return name.strip(), values
 
 
 def _in_unit(study: Study, name: str, text: str, option: str) -> float:
+    if len(name) > 100:
+        raise ConfigError(
+            f"{option}: {quoted(name)} is unknown; allowed: speed, load, a design variable or a key path of the study"
+        )
     unit = unit_of_quantity(study, quantity_name(study, name))
     return quantity(text.strip(), Annotated[float, Quantity(unit)], f"{option}: {name}")
 
@@ -153,5 +156,5 @@ def choices(text: str, allowed: tuple[str, ...], option: str) -> list[str]:
     chosen = [part.strip() for part in text.split(",") if part.strip()]
     unknown = [part for part in chosen if part not in allowed]
     if unknown:
-        raise ConfigError(f"{option}: '{unknown[0]}' is unknown; allowed: {', '.join(allowed)}, or all")
+        raise ConfigError(f"{option}: {quoted(unknown[0])} is unknown; allowed: {', '.join(allowed)}, or all")
     return list(dict.fromkeys(chosen))

@@ -16,7 +16,7 @@ from ..output.gallery import write_design
 from ..results import DesignResult
 from ..strength.materials import MATERIALS
 from ..study import config
-from ..study.variables import TOPOLOGIES
+from ..study.components import optimisable
 from . import summary
 from .arguments import choices
 from .shared import ConfigArgument, OutputOption, err, out, progress, workers_for
@@ -26,7 +26,7 @@ __all__ = ["optimise"]
 
 def optimise(
     file: ConfigArgument,
-    topology: Annotated[str, typer.Option(help=f"{', '.join(TOPOLOGIES)}, a comma list of them, or all.")] = "",
+    topology: Annotated[str, typer.Option(help="A layout, a comma list of them, or all.")] = "",
     material: Annotated[str, typer.Option(help="A material of the library, a comma list, or all.")] = "",
     output: OutputOption = None,
     workers: Annotated[
@@ -39,7 +39,7 @@ def optimise(
     Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
     """
     study = config.load(file)
-    topologies = choices(topology, TOPOLOGIES, "--topology")
+    topologies = choices(topology, optimisable(), "--topology")
     materials = choices(material, tuple(MATERIALS), "--material")
     studies = combinations(study, topologies, materials)
     folder = run_folder(output, file.stem)

@@ -26,7 +26,6 @@ from ..errors import ConfigError, Interrupted
 from ..results import DesignResult, load_result
 from ..study import config
 from ..study.study import Study
-from ..study.variables import DESIGN_VARIABLES
 from ..workers import cores
 
 __all__ = [
@@ -122,24 +121,27 @@ def study_and_design(file: Path, design: Path | None) -> tuple[Study, dict[str, 
 
 def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
     """The study with the layout and material that the result was made for, and its design."""
-    names = DESIGN_VARIABLES.get(result.topology, ())
-    if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):
-        raise ConfigError(
-            f"{source}:1: design: found {result.design or 'none'} (status {result.status}); "
-            f"allowed: a result with positive {', '.join(names) or 'design variables'}"
-        )
     changes = {
         "damper__topology": result.topology,
         "damper__geometry": result.geometry,
         "material": result.config.get("material", study.material.name),
     }
+    if kind := result.config.get("damper", {}).get("kind"):
+        changes["damper__kind"] = kind
+    try:
+        changed = study.replace(**changes)
+    except ConfigError as error:
+        raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None
+    names = changed.variable_names
+    if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):
+        raise ConfigError(
+            f"{source}:1: design: found {result.design or 'none'} (status {result.status}); "
+            f"allowed: a result with positive {', '.join(names) or 'design variables'}"
+        )
     out.print(
         f"Layout ({result.topology}, {result.geometry}) and material ({result.material}) are those of {source}; "
         f"all else is that of {file}.",
         soft_wrap=True,
         markup=False,
     )
-    try:
-        return study.replace(**changes), result.design
-    except ConfigError as error:
-        raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None
+    return changed, result.design

@@ -11,8 +11,11 @@ from typing import Annotated
 import typer
 
 from ..errors import ConfigError, OutputError
+from ..reading import printable
 from ..study import config
-from .shared import out
+from ..study.plausibility import implausible
+from ..study.schema import json_schema
+from .shared import err, out
 
 __all__ = ["init", "schema", "validate"]
 
@@ -30,22 +33,44 @@ def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("st
     out.print(f"{path} written; next: damperopt optimise {path}", soft_wrap=True, markup=False)
 
 
-def schema() -> None:
-    """Print the JSON Schema of a study, for editors."""
-    sys.stdout.write(json.dumps(config.json_schema(), indent=2) + "\n")
+def schema(sweep: Annotated[bool, typer.Option("--sweep", help="Of a sweep instead of a study.")] = False) -> None:
+    """Print the JSON Schema of a study or a sweep, for editors."""
+    if sweep:
+        from ..sweep.spec import SweepSpec  # SciPy's distributions with it: not for every command
+
+    found = json_schema(SweepSpec) if sweep else config.json_schema()
+    sys.stdout.write(json.dumps(found, indent=2) + "\n")
 
 
-def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Studies to check.")]) -> None:
-    """Check one study or more; exit code 2 and one message per problem if something is wrong."""
+def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Studies and sweeps to check.")]) -> None:
+    """Check studies and sweeps; exit code 2 and one message per problem if something is wrong.
+
+    Numbers that are possible but not usual come back as warnings, with the usual range.
+    """
     problems: list[str] = []
     for file in files:
         try:
-            study = config.load(file)
+            text = config.text_of(file)
+            words, warnings = _of_sweep(file) if config.is_sweep(text, str(file)) else _of_study(text, file)
         except ConfigError as error:
             problems += error.problems
-        else:
-            out.print(
-                f"{file}: valid ({study.name}, {study.damper.topology}, order {study.gear.order})", markup=False, soft_wrap=True
-            )
+            continue
+        out.print(f"{printable(file)}: valid ({words})", markup=False, soft_wrap=True)
+        for warning in warnings:
+            err.print(f"{printable(file)}: not usual: {warning}", markup=False, soft_wrap=True)
     if problems:
         raise ConfigError(problems)
+
+
+def _of_study(text: str, file: Path) -> tuple[str, list[str]]:
+    """A study in words, and what is not usual about it."""
+    study = config.loads(text, str(file))
+    return f"{study.name}, {study.damper.topology}, {study.gear.kind}", [str(number) for number in implausible(study)]
+
+
+def _of_sweep(file: Path) -> tuple[str, list[str]]:
+    """A sweep in words; what is not usual about its base is said there."""
+    from ..sweep.spec import load_sweep  # SciPy's distributions with it: not for every command
+
+    sweep = load_sweep(file)
+    return f"sweep {sweep.name}, {len(sweep.points)} points to {sweep.run}", []

@@ -14,12 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-import casadi as ca
+from .calculus import absolute, sqrt, symbol
 
-__all__ = ["Elements", "Linear", "Smooth", "Switch", "Switched"]
+__all__ = ["Corners", "Linear", "Smooth", "Switch", "Switched"]
 
 
-class Elements(Protocol):
+class Corners(Protocol):
     """How |x| is written."""
 
     def magnitude(self, x: Any, width: Any) -> Any:
@@ -82,13 +82,13 @@ class Smooth(_Cornered):
         return self.absolute("", x, width)
 
     def absolute(self, name: str, x: Any, width: Any) -> Any:
-        return ca.sqrt(x**2 + width**2)
+        return sqrt(x**2 + width**2)
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
-        return x / ca.sqrt(x**2 + width**2)
+        return x / sqrt(x**2 + width**2)
 
     def within(self, name: str, x: Any, limit: Any) -> Any:
-        return ca.fabs(x) <= limit
+        return absolute(x) <= limit
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ class Switch:
     """A mode symbol that is +1 where `argument` > 0 and -1 where it is < 0."""
 
     name: str
-    argument: ca.SX
-    mode: ca.SX
+    argument: Any
+    mode: Any
 
 
 @dataclass
@@ -107,11 +107,11 @@ class Switched(_Cornered):
     switches: dict[str, Switch] = field(default_factory=dict)
 
     def magnitude(self, x: Any, width: Any) -> Any:
-        return ca.fabs(x)
+        return absolute(x)
 
     def sign(self, name: str, x: Any, width: Any) -> Any:
         if name not in self.switches:
-            self.switches[name] = Switch(name, ca.SX(x), ca.SX.sym(name))
+            self.switches[name] = Switch(name, x, symbol(name))
         return self.switches[name].mode
 
     def absolute(self, name: str, x: Any, width: Any) -> Any:

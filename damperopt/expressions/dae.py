@@ -8,6 +8,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..quantities.named import State
+
 __all__ = ["DAE", "eliminate"]
 
 
@@ -18,7 +20,7 @@ class DAE:
     Attributes
     ----------
     x, z : casadi.SX
-        (n,) states and (m,) algebraic unknowns; `state_names` names the states.
+        (n,) states and (m,) algebraic unknowns.
     design, data : casadi.SX
         Design variables and the numbers of the study.
     speed, load : casadi.SX
@@ -31,7 +33,9 @@ class DAE:
         (m,) algebraic unknowns at x = 0; of design and data.
     outputs : mapping of str to SX
         Other quantities by name [SI].
-    state_names, design_names, data_names : tuple of str
+    states : tuple of State
+        Declarations of the states, in the order of `x`.
+    design_names, data_names : tuple of str
         Names, in the order of the vectors.
     """
 
@@ -45,10 +49,19 @@ class DAE:
     ode: ca.SX
     alg: ca.SX
     rest: ca.SX
-    state_names: tuple[str, ...]
+    states: tuple[State, ...]
     design_names: tuple[str, ...]
     data_names: tuple[str, ...]
     outputs: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states, in the order of `x`."""
+        return tuple(state.name for state in self.states)
+
+    def index(self, name: str) -> int:
+        """Position of a state in `x`."""
+        return self.state_names.index(name)
 
     @property
     def parameters(self) -> list[ca.SX]:

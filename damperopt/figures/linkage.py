@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..linkages.assembly import layouts
+from ..linkages.base import Layout
 from .style import styled
 
-__all__ = ["Part", "linkage", "parts_of"]
+__all__ = ["linkage"]
 
 MM = 1e3
 WIDTHS = {"link": 7.0, "support": 6.0, "damper": 5.0, "arm": 2.5}
@@ -20,66 +21,23 @@ WIDTHS = {"link": 7.0, "support": 6.0, "damper": 5.0, "arm": 2.5}
 COLOURS = {"link": "#4a4a4a", "arm": "#0b6e99", "damper": "#c2571a", "support": "#7a5195"}
 
 
-@dataclass(frozen=True)
-class Part:
-    """A straight part between two points (x aft, y to the side, z up the strut; origin at the strut axis, apex height) [m]."""
-
-    name: str
-    kind: str
-    start: tuple[float, float, float]
-    end: tuple[float, float, float]
-
-
-def parts_of(topology: str, design: Mapping[str, float]) -> list[Part]:
-    """Parts of a layout at rest.
-
-    Parameters
-    ----------
-    topology : str
-        ``boeing``, ``utas`` or ``arreaza``.
-    design : mapping
-        ``L``, ``gamma`` and, but for Boeing, ``b`` [SI].
-
-    Returns
-    -------
-    list of Part
-    """
-    reach, h_0 = design["L"] * np.sin(design["gamma"]), design["L"] * np.cos(design["gamma"])
-    apex, lower, upper = (reach, 0.0, 0.0), (0.0, 0.0, -h_0), (0.0, 0.0, h_0)
-    lower_link = Part("lower torque link", "link", lower, apex)
-    if topology == "boeing":
-        gap = 0.05 * reach
-        return [
-            lower_link,
-            Part("upper torque link", "link", upper, apex),
-            Part("damper at the apex", "damper", (reach, -gap, 0.0), (reach, gap, 0.0)),
-        ]
-    b = design["b"]
-    if topology == "utas":
-        return [lower_link, Part("bending arm", "arm", (0.0, b, h_0), apex), Part("damper", "damper", (0.0, -b, h_0), apex)]
-    support = (reach, b, 0.0)
-    return [
-        lower_link,
-        Part("bending arm", "arm", upper, apex),
-        Part("rigid support", "support", (0.0, b, h_0), support),
-        Part("damper", "damper", support, apex),
-    ]
-
-
-def linkage(topology: str, design: Mapping[str, float]) -> Any:
+def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
     """Side and top view in one scale.
 
     Parameters
     ----------
-    topology : str
+    layout : Layout or str
+        The damper of a study, or a topology.
     design : mapping
-        [SI]
+        Design variables by name [SI].
 
     Returns
     -------
     matplotlib Figure
     """
-    parts = parts_of(topology, design)
+    if isinstance(layout, str):
+        layout = layouts()[layout].model_construct(topology=layout)
+    parts = layout.members(design)
     points = MM * np.array([point for part in parts for point in (part.start, part.end)])
     low, high = points.min(axis=0), points.max(axis=0)
     room = 0.15 * (high - low).max()

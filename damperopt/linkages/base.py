@@ -1,76 +1,156 @@
-"""Records of a damper linkage: lengths and levers as expressions of the yaw angle."""
+"""What every layout is: an angle becomes a deflection and a stroke, and members carry what acts along them.
+
+Every layout is a pair of lengths that depend on the yaw angle psi: the deflection eps(psi) of the spring or arm tip, and
+the stroke s(psi) of the damper. With a spring of stiffness k_eps and a damper force F(s'), virtual work gives
+
+    torque = -k_eps eps(psi) eps'(psi) - F(s'(psi) psi') s'(psi).
+
+Geometry `planar` is the linkage seen from the top: eps is that of an apex moving purely sideways by ell sin(psi), with
+ell = L sin(gamma). Geometry `spatial` is the linkage itself, see `spatial`. Geometry `published` keeps the planar levers at
+rest for strokes and stresses, but takes stiffness and damping as printed in the thesis, known errors included; see the errata
+in the documentation.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar, Literal
 
-import casadi as ca
+from ..expressions.calculus import Expr, cos, sin, slope, sqrt, symbol, value_at
+from ..ports.linkage import Linkage, Member, Position
+from ..ports.sizing import LimitEvent
+from ..quantities.named import DesignVariable
+from ..quantities.record import Record
+from ..strength.members import member_mass
 
-__all__ = ["Linkage", "Position"]
+__all__ = ["Layout", "TorqueLinks", "from_lengths", "reach_and_height", "straight"]
 
 
-@dataclass(frozen=True)
-class Position:
-    """The linkage at a yaw angle; expressions.
+class Layout(Record):
+    """Layout of a shimmy damper: where spring, arm and damper act on the gear.
 
-    Attributes
-    ----------
-    deflection, stroke : SX
-        Deflection eps of the spring or arm tip, and stroke s of the damper from rest [m].
-    spring_lever, damper_lever : SX
-        d eps/d psi and ds/d psi [m/rad].
+    A layout is a file of its own with a class derived from this one, a literal `topology`, its `VARIABLES`, and the methods
+    `linkage` and `members`. In a study its keys stand in the block `damper` beside those of the damper.
     """
 
-    deflection: Any
-    spring_lever: Any
-    stroke: Any
-    damper_lever: Any
+    GROUP: ClassVar[str] = "damperopt.linkages"
+    VARIABLES: ClassVar[tuple[DesignVariable, ...]] = ()
+    """Numbers of the layout that the optimiser may choose, beside those of the damper."""
+    ROTARY: ClassVar[bool] = False
+    """Whether dampers act about the yaw axis itself."""
+    DAMPER: ClassVar[str] = "hydraulic"
+    """Kind of the damper where a study names none."""
+    SPRING: ClassVar[str | None] = None
+    """Design variable that makes it stiff, for the axes of charts."""
+    MIRRORS: ClassVar[bool] = True
+    """Whether a mirrored motion is a motion too."""
+
+    topology: str
+    geometry: Literal["published", "planar", "spatial"] = "planar"
+    """How lengths follow from the yaw angle: as printed in the thesis, from the top, or in space."""
+
+    def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
+        """Lengths and levers.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        youngs_modulus : Expr
+            E of the bending arm [Pa].
+        stroke : Expr
+            Of the shock strut [m]: it brings the lugs together by as much.
+        """
+        raise NotImplementedError  # every layout says it
+
+    def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
+        """Members at rest: one list to draw, to weigh and to check.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        stroke : Expr
+            Of the shock strut [m].
+        """
+        return ()
+
+    def masses(self, design: Mapping[str, Expr], event: LimitEvent, study: Any) -> dict[str, Expr]:
+        """Mass of the layout by part, without the damper [kg].
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        event : LimitEvent
+        study : Study
+            Floats or symbols: material, mass model, requirements.
+        """
+        parts: dict[str, Expr] = {}
+        for member in self.members(design):
+            if member.part:
+                mass = member_mass(member, event, study)
+                parts[member.part] = parts[member.part] + mass if member.part in parts else mass
+        return parts
 
 
-@dataclass(frozen=True)
-class Linkage:
-    """A damper layout; expressions in the design variables.
+class TorqueLinks(Layout):
+    """Layouts with two lugs at the strut, 2 L cos(gamma) apart, and an apex at L sin(gamma) from its axis."""
 
-    Attributes
-    ----------
-    stiffness, damping : SX
-        k_eps [N/m] along the deflection and c_lambda [N s/m] along the stroke.
-    at : callable
-        psi [rad] -> Position.
-    spring_lever, damper_lever : SX
-        d eps/d psi and ds/d psi at psi = 0 [m/rad].
-    reach : SX
-        Horizontal distance of the apex from the strut axis, L sin(gamma) [m].
-    arm_length : SX or None
-        Length of the bending arm that enters its bending [m].
-    damper_length : SX or None
-        Pin-to-pin length of the damper [m]; None where the layout does not limit it.
-    unknowns, rest : SX
-        (m,) algebraic unknowns of the closed loop, and their values at psi = 0; empty unless `spatial`.
-    closure : callable
-        psi -> (m,) residual, zero where the loop is closed.
-    """
+    LENGTHS: ClassVar = (
+        DesignVariable("L", "m", "$L$", "length of a torque link", example="0.6 m"),
+        DesignVariable(
+            "gamma", "rad", r"$\gamma$", "angle of a torque link to the strut axis", False, below=1.5707963, example="31 deg"
+        ),
+    )
+    SIDE: ClassVar = DesignVariable("b", "m", "$b$", "side distance of arm or damper root from the axis", example="0.2 m")
+    ARM: ClassVar = DesignVariable("I_arm", "m^4", "$I_{arm}$", "second moment of area of the arm", example="3.4e-6 m^4")
 
-    stiffness: Any
-    damping: Any
-    at: Callable[[Any], Position]
-    spring_lever: Any
-    damper_lever: Any
-    reach: Any
-    arm_length: Any = None
-    damper_length: Any = None
-    unknowns: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
-    rest: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
-    closure: Callable[[Any], ca.SX] = lambda psi: ca.SX(0, 1)
+    def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
+        """By the level of the geometry."""
+        if self.geometry == "spatial":
+            return self.spatial(design, youngs_modulus, stroke)
+        planar, (k_psi, c_psi) = self.planar(design, youngs_modulus, stroke)
+        if self.geometry == "planar":
+            return planar
+        spring, lever = planar.spring_lever, planar.damper_lever
+        lengths = planar.reach, planar.arm_length, planar.damper_length
+        return straight(k_psi / spring**2, spring, lever, *lengths, as_printed={"c_lambda": c_psi / lever**2})
 
-    @property
-    def torsional_stiffness(self) -> Any:
-        """k_psi [N m/rad] at psi = 0."""
-        return self.stiffness * self.spring_lever**2
+    def planar(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> tuple[Linkage, tuple[Expr, Expr]]:
+        """The linkage from the top, and k_psi [N m/rad] and c_psi [N m s/rad] as printed in the thesis."""
+        raise NotImplementedError  # every layout says it
 
-    @property
-    def torsional_damping(self) -> Any:
-        """c_psi [N m s/rad] at psi = 0."""
-        return self.damping * self.damper_lever**2
+    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:
+        """The linkage in space."""
+        raise NotImplementedError  # every layout says it
+
+
+def reach_and_height(design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Expr, Expr]:
+    """Reach of the apex, L sin(gamma), and half the lug distance, L cos(gamma) less half the stroke of the strut [m]."""
+    L, gamma = design["L"], design["gamma"]
+    if isinstance(stroke, (int, float)) and stroke == 0:
+        return L * sin(gamma), L * cos(gamma)
+    height = L * cos(gamma) - stroke / 2
+    return sqrt(L**2 - height**2), height
+
+
+def straight(stiffness: Expr, spring_lever: Expr, damper_lever: Expr, *lengths: Expr, **more: Any) -> Linkage:
+    """Linkage with constant levers; `lengths` are reach, arm and damper."""
+
+    def at(psi: Expr) -> Position:
+        return Position(spring_lever * psi, spring_lever, damper_lever * psi, damper_lever)
+
+    return Linkage(stiffness, at, spring_lever, damper_lever, *lengths, **more)
+
+
+def from_lengths(stiffness: Expr, eps: Callable[[Expr], Expr], s: Callable[[Expr], Expr], *lengths: Expr) -> Linkage:
+    """Linkage of two lengths eps(psi), s(psi), with levers as their derivatives; `lengths` are reach, arm and damper."""
+    psi = symbol("psi")
+    expressions: Sequence[Expr] = [eps(psi), slope(eps, psi), s(psi) - s(0), slope(s, psi)]
+
+    def at(angle: Expr) -> Position:
+        return Position(*(value_at(expression, psi, angle) for expression in expressions))
+
+    rest = at(0)
+    return Linkage(stiffness, at, rest.spring_lever, rest.damper_lever, *lengths)

@@ -1,13 +1,15 @@
-"""Records of what a real gear has besides its ideal linkage: compliance, freeplay, stops, friction, orifices."""
+"""What a real linkage has besides its ideal one: compliance of the links, freeplay, stops."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from ..quantities.record import Length, Record, Stiffness, Torque
+from ..expressions.calculus import Expr
+from ..expressions.corners import Corners
+from ..quantities.record import Length, Record, SeriesStiffness, Stiffness
 from ..quantities.units import Quantity
 
-__all__ = ["EndStop", "Freeplay", "Friction", "Orifice"]
+__all__ = ["EndStop", "Freeplay", "Joints", "beyond_gap", "stop_force"]
 
 _Smoothing = Annotated[float, Quantity("1", above=0, at_most=0.5)]
 
@@ -25,23 +27,41 @@ class EndStop(Record):
     """Stop of the damper at +-`stroke` from rest; without `stiffness` the model ends there."""
 
     stroke: Length
+    """To one side [m]."""
     stiffness: Stiffness | None = None
     """Of the contact [N/m]."""
     smoothing: _Smoothing = 0.002
     """Width of the rounded corner of the smooth version, as a fraction of the stroke."""
 
 
-class Friction(Record):
-    """Dry (Coulomb) friction of the strut in yaw."""
+class Joints(Record):
+    """Keys of a study's damper that belong to the joints of its linkage."""
 
-    torque: Torque
-    smoothing: Annotated[float, Quantity("rad/s", above=0, example="0.001 rad/s")] = 1e-3
-    """Yaw rate over which the smooth version turns around [rad/s]."""
+    link_stiffness: SeriesStiffness | None = None
+    """Of the torque links, laterally at the apex, in series with the linkage [N/m]."""
+    freeplay: Freeplay | None = None
+    """Play of the apex joint."""
+    end_stop: EndStop | None = None
+    """Stop of the damper's stroke."""
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What these joints do not hold, and what of them only a simulation of large motion holds."""
+        words = []
+        if self.link_stiffness is None:
+            words.append("flexibility of the torque links (damper.link_stiffness)")
+        if self.freeplay is None and self.end_stop is None:
+            words.append("freeplay and end stops (damper.freeplay, damper.end_stop)")
+        return tuple(words)
 
 
-class Orifice(Record):
-    """Quadratic damping of an orifice, F = c_lambda v + coefficient v |v|."""
+def beyond_gap(freeplay: Freeplay, reach: Expr, corners: Corners, angle: Expr) -> tuple[Expr, Expr]:
+    """Angle beyond the play of an apex at `reach` [m], and its slope; [rad]."""
+    half_width = freeplay.gap / reach
+    return corners.gap("freeplay", angle, half_width, freeplay.smoothing * half_width)
 
-    coefficient: Annotated[float, Quantity("N s^2/m^2", above=0, example="5e4 N s^2/m^2")]
-    smoothing: Annotated[float, Quantity("m/s", above=0, example="1 mm/s")] = 1e-3
-    """Damper speed below which the smooth version is rounded [m/s]."""
+
+def stop_force(stop: EndStop | None, corners: Corners, stroke: Expr) -> Expr:
+    """Force of the stop [N]; 0 without a stop, or with one at which the model ends."""
+    if stop is None or stop.stiffness is None:
+        return 0
+    return stop.stiffness * corners.contact("end stop", stroke, stop.stroke, stop.smoothing * stop.stroke)

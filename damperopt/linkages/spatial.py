@@ -12,31 +12,49 @@ The unknowns are (eps, q, z). Levers follow from the implicit function theorem o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
-import casadi as ca
+from ..expressions.calculus import Expr, cos, implicit_slopes, is_symbol, partial, sin, sqrt, symbol, value_at
+from ..ports.linkage import Linkage, Point, Position
+from .base import reach_and_height
 
-from .base import Linkage, Position
-
-__all__ = ["FORESHORTENING", "spatial"]
+__all__ = ["FORESHORTENING", "closed_loop"]
 
 FORESHORTENING = 3 / 5
 """Tip retreat of a cantilever loaded at its tip, in units of eps^2/length: half the integral of the squared slope."""
 
 
-def spatial(topology: str, design: Mapping[str, Any], youngs_modulus: Any) -> Linkage:
-    """Spatial linkage of a layout.
+def closed_loop(
+    design: Mapping[str, Expr],
+    stiffness: Expr,
+    *,
+    stroke: Expr = 0,
+    y_root: Expr = 0,
+    arm_length: Expr = None,
+    damper_end: Point | None = None,
+    damper_length: Expr = None,
+    spring_lever: Expr = None,
+    damper_lever: Expr = None,
+) -> Linkage:
+    """Closed loop of a layout with torque links.
 
     Parameters
     ----------
-    topology : str
-        ``boeing``: two stiff links, spring and damper along y in the apex gap. ``utas``: arm rooted at y = b on the upper
-        hinge line, damper from (0, -b, h) to the apex. ``arreaza``: arm rooted at y = 0, damper from (ell, -b, 0), on a
-        rigid support, to the apex; at rest it is perpendicular to the links.
-    design : mapping
-        Design variables by name [SI].
-    youngs_modulus : SX
-        E of the bending arm [Pa].
+    design : mapping of str to Expr
+        With L and gamma [SI].
+    stiffness : Expr
+        Of the spring or arm at the apex [N/m].
+    stroke : Expr
+        Of the shock strut [m].
+    y_root : Expr
+        Of the arm on the upper hinge line [m].
+    arm_length : Expr or None
+        Unflexed arm [m]; None: a stiff upper link, and spring and damper in the gap at the apex.
+    damper_end : Point or None
+        Where the damper is fixed to the strut [m]; None: it acts along the deflection.
+    damper_length : Expr
+        Of the damper at rest [m].
+    spring_lever, damper_lever : Expr
+        d eps/d psi and ds/d psi at rest [m/rad], which the equations have in closed form.
 
     Returns
     -------
@@ -44,42 +62,37 @@ def spatial(topology: str, design: Mapping[str, Any], youngs_modulus: Any) -> Li
         With unknowns deflection eps [m], q [m] and apex height z [m].
     """
     # theory page, spatial linkage: ell reach, h half the lug distance, l_arm unflexed arm
-    L, gamma, c_lambda, b = design["L"], design["gamma"], design["c_lambda"], design.get("b", 0)
-    ell, h = L * ca.sin(gamma), L * ca.cos(gamma)
-    y_root = b if topology == "utas" else 0
-    l_arm = ca.sqrt(L**2 + y_root**2) if topology == "utas" else L
-    foreshortening = 0 if topology == "boeing" else FORESHORTENING
-
-    eps, q, z, psi = (ca.SX.sym(name) for name in ("arm_deflection", "apex_reach", "apex_height", "psi"))
-    unknowns = ca.vertcat(eps, q, z)
-    x, y = q * ca.cos(psi), q * ca.sin(psi)
+    L, (ell, h) = design["L"], reach_and_height(design, stroke)
+    foreshortening, l_arm = (0, L) if arm_length is None else (FORESHORTENING, arm_length)
+    eps, q, z, psi = (symbol(name) for name in ("arm_deflection", "apex_reach", "apex_height", "psi"))
+    x, y = q * cos(psi), q * sin(psi)
     along = l_arm - foreshortening * eps**2 / l_arm
     u_tip, y_tip = (along * L + eps * y_root) / l_arm, y_root + (eps * L - along * y_root) / l_arm
-    closure = ca.vertcat(q**2 + (z + h) ** 2 - L**2, x**2 + (z - h) ** 2 - u_tip**2, y - y_tip)
-    s = {
-        "boeing": lambda: eps,
-        "utas": lambda: ca.sqrt(x**2 + (y + b) ** 2 + (z - h) ** 2),
-        "arreaza": lambda: ca.sqrt((x - ell) ** 2 + (y + b) ** 2 + z**2),
-    }[topology]()
+    closure = (q**2 + (z + h) ** 2 - L**2, x**2 + (z - h) ** 2 - u_tip**2, y - y_tip)
+    unknowns = (eps, q, z)
+    s = eps if damper_end is None else sqrt(sum(_square(a, b) for a, b in zip((x, y, z), damper_end, strict=True)))
 
-    rates = -ca.inv_minor(ca.jacobian(closure, unknowns)) @ ca.jacobian(closure, psi)
-    damper_lever = ca.jacobian(s, psi) + ca.jacobian(s, unknowns) @ rates
-    damper_length: Any = {"boeing": 0, "utas": l_arm, "arreaza": b}[topology]
-    expressions = [eps, rates[0], s - damper_length, damper_lever]
+    rates = implicit_slopes(closure, unknowns, psi)
+    lever = partial(s, psi) + sum(partial(s, u) * rate for u, rate in zip(unknowns, rates, strict=True))
+    rest_length = 0 if damper_length is None else damper_length
+    expressions = [eps, rates[0], s - rest_length, lever]
 
-    def at(angle: Any) -> Position:
-        return Position(*(ca.substitute(expression, psi, angle) for expression in expressions))
+    def at(angle: Expr) -> Position:
+        return Position(*(value_at(expression, psi, angle) for expression in expressions))
 
     return Linkage(
-        stiffness=design["k_lambda"] if topology == "boeing" else 3 * youngs_modulus * design["I_arm"] / l_arm**3,
-        damping=c_lambda,
+        stiffness=stiffness,
         at=at,
-        spring_lever=ell * l_arm / L,
-        damper_lever=2 * b * ell / l_arm if topology == "utas" else ell,
+        spring_lever=spring_lever,
+        damper_lever=damper_lever,
         reach=ell,
-        arm_length=None if topology == "boeing" else l_arm,
-        damper_length=None if topology == "boeing" else damper_length,
+        arm_length=arm_length,
+        damper_length=damper_length,
         unknowns=unknowns,
-        rest=ca.vertcat(0, ell, 0),
-        closure=lambda angle: ca.substitute(closure, psi, angle),
+        rest=(0, ell, 0),
+        closure=lambda angle: tuple(value_at(equation, psi, angle) for equation in closure),
     )
+
+
+def _square(a: Expr, b: Expr) -> Expr:
+    return a**2 if not is_symbol(b) and isinstance(b, (int, float)) and b == 0 else (a - b) ** 2

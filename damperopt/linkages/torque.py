@@ -1,8 +1,8 @@
 """Torque of a damper on the gear: the linkage with everything that stands in series or in parallel with it.
 
-From the gear to the damper: yaw psi, apex freeplay, torque links of stiffness k_t (at the apex, laterally; thesis (3-14)),
-the linkage at its own angle psi_l with spring or arm, end stop and damper, and in series with the damper the stiffness k_s
-of oil column, rod and brackets. Damper law F = c v + c_2 v |v|. Torques by virtual work.
+From the gear to the damper: the angle of the attachment (yaw psi), apex freeplay, torque links of stiffness k_t (at the apex,
+laterally; thesis (3-14)), the linkage at its own angle psi_l with spring or arm, end stop and damper, and in series with the
+damper the stiffness k_s of oil column, rod and brackets. Torques by virtual work.
 
 The nodes between are massless, so that each either follows from a first-order equation (psi_l where the damper is rigidly
 attached, the dashpot's own stroke where it is not) or is an algebraic unknown (psi_l with both compliances).
@@ -10,133 +10,142 @@ attached, the dashpot's own stroke where it is not) or is an algebraic unknown (
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-import casadi as ca
+from ..dampers.base import Context
+from ..expressions.calculus import Expr, symbol
+from ..expressions.corners import Corners
+from ..ports.linkage import Linkage
+from ..ports.motion import Attachment, Torque
+from ..quantities.named import Output, State
+from .joints import beyond_gap, stop_force
 
-from ..expressions.corners import Elements
-from .base import Linkage
+__all__ = ["CHAIN_STATES", "OUTPUTS", "ROTARY_OUTPUTS", "damper_torque"]
 
-__all__ = ["DamperTorque", "damper_torque"]
+CHAIN_STATES = (State("dashpot_stroke", "m", "damper"), State("link_angle", "rad", "damper"))
+"""States that compliances add."""
 
+OUTPUTS = (
+    Output("damper_stroke", "m", "from rest"),
+    Output("damper_speed", "m/s"),
+    Output("damper_force", "N", "against the stroke"),
+    Output("spring_deflection", "m", "of the spring, or of the tip of the bending arm"),
+    Output("spring_force", "N"),
+    Output("stop_force", "N", "of the end stop"),
+)
+"""What a linkage shows."""
 
-@dataclass
-class DamperTorque:
-    """Torque on the gear [N m] and the states and unknowns that it needs; expressions.
-
-    Attributes
-    ----------
-    torque : SX
-        On the gear, against positive yaw where negative.
-    states, rates : dict of str to SX
-        More states and their derivatives.
-    unknowns, rest, residuals : list of SX
-        Algebraic unknowns, their values at rest, equations = 0.
-    outputs : dict of str to SX
-        Strokes [m], forces [N], speeds [m/s].
-    """
-
-    torque: Any = 0
-    states: dict[str, ca.SX] = field(default_factory=dict)
-    rates: dict[str, Any] = field(default_factory=dict)
-    unknowns: list[ca.SX] = field(default_factory=list)
-    rest: list[Any] = field(default_factory=list)
-    residuals: list[Any] = field(default_factory=list)
-    outputs: dict[str, Any] = field(default_factory=dict)
+ROTARY_OUTPUTS = (
+    Output("damper_angle", "rad", "from rest"),
+    Output("damper_rate", "rad/s"),
+    Output("damper_torque", "N m", "against the motion"),
+    Output("spring_angle", "rad"),
+    Output("spring_torque", "N m"),
+)
+"""The same where spring and damper act about the yaw axis itself."""
 
 
-def damper_torque(damper: Any, link: Linkage, elements: Elements, psi: Any, psi_t: Any) -> DamperTorque:
-    """Torque of `link`, with the joints and compliances of `damper`, on a gear at yaw `psi` and yaw rate `psi_t`.
+def damper_torque(
+    damper: Any, link: Linkage, design: Mapping[str, Expr], corners: Corners, attachment: Attachment, context: Context
+) -> Torque:
+    """Torque of `link`, with the joints and compliances of `damper`, on a gear.
 
     Parameters
     ----------
-    damper : Damper
+    damper : Assembly
         Floats or symbols.
     link : Linkage
-    elements : Elements
+    design : mapping of str to Expr
+        Design variables by name [SI].
+    corners : Corners
         Version of the nonlinear elements.
-    psi, psi_t : SX
-        [rad], [rad/s]
+    attachment : Attachment
+        Angle [rad] and rate [rad/s] that the gear gives.
+    context : Context
 
     Returns
     -------
-    DamperTorque
+    Torque
     """
-    # k_t, k_s series stiffnesses, s stroke, F_d damper force, v its speed, psi_l angle of the linkage
-    k_t, k_s = damper.link_stiffness, damper.series_stiffness
-    result = DamperTorque()
-    driving, engaged = psi, 1
-    if k_t is not None:
-        driving = ca.SX.sym("link_angle")
-    elif damper.freeplay is not None:
-        driving, engaged = _beyond_gap(damper.freeplay, link, elements, psi)
-    position = link.at(driving)
-    s, lever = position.stroke, position.damper_lever
-    F_spring, F_stop = link.stiffness * position.deflection, _stop_force(damper.end_stop, elements, s)
-    elastic = F_spring * position.spring_lever + F_stop * lever
+    return _Chain(damper, link, {**design, **link.as_printed}, corners, attachment, context).torque()
 
-    if k_t is not None:
-        twist = psi - driving
-        if damper.freeplay is not None:
-            twist, _ = _beyond_gap(damper.freeplay, link, elements, twist)
-        through = k_t * link.reach**2 * twist
-        result.torque = -through
 
-    if k_s is not None:
-        own = ca.SX.sym("dashpot_stroke")
-        F_d = k_s * (s - own)
-        v = _speed(damper.orifice, link.damping, elements, F_d)
-        result.states["dashpot_stroke"], result.rates["dashpot_stroke"] = own, v
+class _Chain:
+    """One chain from the gear to the damper, as it is being written down."""
+
+    states: ClassVar = {state.name: state for state in CHAIN_STATES}
+
+    def __init__(
+        self, damper: Any, link: Linkage, design: Mapping[str, Expr], corners: Corners, attachment: Attachment, context: Context
+    ):
+        self._damper, self._link, self._design = damper, link, design
+        self._corners, self._attachment, self._context = corners, attachment, context
+        self._own = {state.name: symbol(state.name) for state in damper.STATES}
+        self._unknowns: list[tuple[Expr, Expr, Expr]] = []  # symbol, value at rest, residual
+
+    def torque(self) -> Torque:
+        """The four cases: with and without compliance of the links (k_t) and in series with the damper (k_s)."""
+        damper, link = self._damper, self._link
+        k_t, k_s = damper.links(self._design), damper.series(self._design)
+        psi, psi_t = self._attachment.angle, self._attachment.rate
+        driving, engaged = psi, 1
         if k_t is not None:
-            result.unknowns, result.rest = [driving], [0]
-            # in units of an angle, as the unknown is
-            result.residuals = [(through - elastic - F_d * lever) / (k_t * link.reach**2)]
+            driving = symbol("link_angle")
+        elif damper.play is not None:
+            driving, engaged = beyond_gap(damper.play, link.reach, self._corners, psi)
+        position = link.at(driving)
+        s, lever = position.stroke, position.damper_lever
+        F_spring, F_stop = link.stiffness * position.deflection, stop_force(damper.stop, self._corners, s)
+        elastic = F_spring * position.spring_lever + F_stop * lever
+        chain: dict[str, tuple[Expr, Expr]] = {}  # state: symbol, rate
+        through = None if k_t is None else self._through_links(k_t, psi - driving)
+
+        if k_s is not None:
+            dashpot = symbol("dashpot_stroke")
+            F_d = k_s * (s - dashpot)
+            v = self._speed(dashpot, F_d)
+            chain["dashpot_stroke"] = dashpot, v
+            if k_t is not None:  # in units of an angle, as the unknown is
+                self._unknowns.append((driving, 0, (through - elastic - F_d * lever) / (k_t * link.reach**2)))
+        elif k_t is not None:
+            F_d = (through - elastic) / lever
+            v = self._speed(s, F_d)
+            chain["link_angle"] = driving, v / lever
         else:
-            result.torque = -engaged * (elastic + F_d * lever)
-    elif k_t is not None:
-        F_d = (through - elastic) / lever
-        v = _speed(damper.orifice, link.damping, elements, F_d)
-        result.states["link_angle"], result.rates["link_angle"] = driving, v / lever
-    else:
-        v = engaged * lever * psi_t
-        F_d = _force(damper.orifice, link.damping, elements, v)
-        result.torque = -engaged * (elastic + F_d * lever)
+            v = engaged * lever * psi_t
+            F_d = self._force(s, v).force
+        torque = -engaged * (elastic + F_d * lever) if through is None else -through
 
-    result.unknowns.insert(0, link.unknowns)
-    result.rest.insert(0, link.rest)
-    result.residuals.insert(0, link.closure(driving))
-    result.outputs = {
-        "damper_stroke": s,
-        "damper_speed": v,
-        "damper_force": F_d,
-        "spring_deflection": position.deflection,
-        "spring_force": F_spring,
-        "stop_force": F_stop,
-    }
-    return result
+        own = self._force(s if k_s is None else chain["dashpot_stroke"][0], v)
+        rates = {name: rate for name, (_, rate) in chain.items()} | dict(own.rates)
+        closure, unknowns = link.closure(driving), self._unknowns
+        shown = (s, v, F_d, position.deflection, F_spring, F_stop)
+        names = ROTARY_OUTPUTS if damper.ROTARY else OUTPUTS
+        return Torque(
+            torque,
+            {name: x for name, (x, _) in chain.items()} | self._own,
+            rates,
+            (*link.unknowns, *(unknown for unknown, _, _ in unknowns)),
+            (*link.rest, *(rest for _, rest, _ in unknowns)),
+            (*closure, *(residual for _, _, residual in unknowns)),
+            dict(zip((o.name for o in names), shown, strict=False)) | dict(own.outputs),
+        )
 
+    def _through_links(self, k_t: Expr, twist: Expr) -> Expr:
+        """Torque through elastic links [N m]; the play stands in series with them."""
+        if self._damper.play is not None:
+            twist, _ = beyond_gap(self._damper.play, self._link.reach, self._corners, twist)
+        return k_t * self._link.reach**2 * twist
 
-def _beyond_gap(freeplay: Any, link: Linkage, elements: Elements, angle: Any) -> tuple[Any, Any]:
-    half_width = freeplay.gap / link.reach
-    return elements.gap("freeplay", angle, half_width, freeplay.smoothing * half_width)
+    def _force(self, stroke: Expr, rate: Expr) -> Any:
+        return self._damper.force(self._design, self._own, stroke, rate, self._context, self._corners)
 
-
-def _stop_force(stop: Any, elements: Elements, stroke: Any) -> Any:
-    if stop is None or stop.stiffness is None:
-        return 0
-    return stop.stiffness * elements.contact("end stop", stroke, stop.stroke, stop.smoothing * stop.stroke)
-
-
-def _force(orifice: Any, c: Any, elements: Elements, v: Any) -> Any:
-    if orifice is None:
-        return c * v
-    return c * v + orifice.coefficient * v * elements.magnitude(v, orifice.smoothing)
-
-
-def _speed(orifice: Any, c: Any, elements: Elements, F: Any) -> Any:
-    """Inverse of the damper law: the positive root of c_2 v^2 + c v = |F|, in the form that also holds for c_2 = 0."""
-    if orifice is None:
-        return F / c
-    magnitude = elements.magnitude(F, c * orifice.smoothing)
-    return 2 * F / (c + ca.sqrt(c**2 + 4 * orifice.coefficient * magnitude))
+    def _speed(self, stroke: Expr, force: Expr) -> Expr:
+        """Rate of the damper at a force: in closed form, or as an unknown whose equation is the force itself."""
+        rate = self._damper.rate(self._design, self._own, stroke, force, self._context, self._corners)
+        if rate is None:
+            rate = symbol("damper_speed")
+            scale = self._damper.damping(self._design) or 1.0
+            self._unknowns.append((rate, 0, (self._force(stroke, rate).force - force) / scale))
+        return rate

@@ -82,7 +82,7 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
         ("unclosed", UNCLOSED, "the equations of the closed linkage are not solved"),
         ("slip_angle", slip_range, f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"),
     ]
-    stop = study.damper.end_stop
+    stop = study.damper.stop
     if stop is not None and stop.stiffness is None:
         limits.append(("damper_stroke", stop.stroke, f"the damper meets its stop at {stop.stroke * 1e3:.4g} mm"))
     first, message = values.shape[1], ""

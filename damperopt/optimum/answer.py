@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..results import UNITS, ConstraintResult, LocalOptimum, Relaxation, StartResult
+from ..results import ConstraintResult, LocalOptimum, Relaxation, StartResult
+from ..study.components import unit_of_name
 from ..study.study import Study
 from .exchange import EnvelopeSolution
-from .problem import ROD, DesignProblem
+from .problem import DesignProblem
 
 __all__ = [
     "SAME_MASS",
@@ -85,7 +86,7 @@ def _active_bounds(problem: DesignProblem, best: EnvelopeSolution) -> tuple[Cons
     """Bounds of design variables that carry a multiplier (fixed variables: what fixing them costs)."""
     found = []
     for variable, multiplier in zip(problem.variables, best.solution.bound_multipliers, strict=True):
-        if variable.name == ROD or abs(multiplier) < 1e-6 * best.solution.objective:
+        if variable.name not in problem.design_names or abs(multiplier) < 1e-6 * best.solution.objective:
             continue
         upper = multiplier > 0
         limit = variable.upper if upper else variable.lower
@@ -98,7 +99,7 @@ def _active_bounds(problem: DesignProblem, best: EnvelopeSolution) -> tuple[Cons
                 value=best.solution.design[variable.name],
                 limit=limit,
                 sense="<=" if upper else ">=",
-                unit=UNITS[variable.name],
+                unit=unit_of_name(variable.name),
                 active=True,
                 multiplier=abs(float(multiplier)),
                 shadow_price=-float(slope),
@@ -119,14 +120,10 @@ def decided_by(constraints: Sequence[ConstraintResult], mass: float) -> dict[str
 
 def not_checked(study: Study) -> tuple[str, ...]:
     """What a result says nothing about."""
-    damper, notes = study.damper, []
+    notes = [*study.gear.leaves_out(), *study.tyre.contact.leaves_out(), *study.damper.leaves_out()]
     if study.required.decay is None:
         notes.append("decay of large disturbances on the nonlinear model (requirements.decay)")
-    if damper.series_stiffness is None:
-        notes.append("damper compliance in series (damper.series_stiffness)")
-    if damper.freeplay is None and damper.end_stop is None:
-        notes.append("freeplay and end stops (damper.freeplay, damper.end_stop)")
-    if study.damper.topology != "boeing" and not study.material.has_fatigue_data:
+    if "I_arm" in study.variable_names and not study.material.has_fatigue_data:
         notes.insert(0, f"fatigue of the bending arm: no Basquin data for {study.material.name}")
     return tuple(notes)
 

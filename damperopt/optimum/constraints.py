@@ -9,10 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-import casadi as ca
-
-from ..linkages.base import Linkage
-from ..objectives import LimitEvent, allowable_stress, arm_stress, bore, rod_diameters, rod_length
+from ..expressions.calculus import cos, log
+from ..linkages.base import TorqueLinks
+from ..objectives import SizedLayout
+from ..ports.linkage import Linkage, Member
+from ..ports.sizing import LimitEvent
+from ..strength.materials import allowable_stress
+from ..strength.members import root_stress
 
 __all__ = ["Constraint", "geometry", "strength"]
 
@@ -51,12 +54,12 @@ class Constraint:
     @property
     def row(self) -> Any:
         """Scaled violation, <= 0 where the constraint holds."""
-        excess = ca.log(self.value / self.limit) if self.ratio else self.value - self.limit
+        excess = log(self.value / self.limit) if self.ratio else self.value - self.limit
         return -excess if self.at_least else excess
 
 
-def strength(study: Any, design: Mapping[str, Any], event: LimitEvent, rod_diameter: Any) -> list[Constraint]:
-    """Stress and fatigue of the bending arm, the rod, and the least working stroke.
+def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[Constraint]:
+    """Stress and fatigue of the bending arm, the damper's own sizes, and the least working stroke.
 
     Parameters
     ----------
@@ -64,38 +67,39 @@ def strength(study: Any, design: Mapping[str, Any], event: LimitEvent, rod_diame
         Floats or symbols.
     design : mapping
         Design variables by name.
-    event : LimitEvent
-    rod_diameter : SX
-        [m]
+    sized : SizedLayout
 
     Returns
     -------
     list of Constraint
     """
     required = study.requirements
-    blocks: list[Constraint] = []
-    relaxed: tuple[str, ...]
-    if "I_arm" in design:
-        stress = arm_stress(study, design, event)
-        allowed = allowable_stress(study.material, required.safety_factor)
-        relaxed = ("requirements.safety_factor", "requirements.limit_torque", "requirements.limit_torque_factor")
-        blocks.append(Constraint("arm_stress", stress, allowed, False, "Pa", relaxed, ratio=True))
-        if study.material.has_fatigue_data:
-            amplitude, cycles = required.fatigue.stress_fraction * stress, required.fatigue.cycles
-            endured = study.material.fatigue_strength_coefficient * (2 * cycles) ** study.material.fatigue_exponent
-            relaxed = ("requirements.fatigue.stress_fraction", "requirements.fatigue.cycles", *relaxed[1:])
-            blocks.append(Constraint("arm_fatigue", amplitude, endured, False, "Pa", relaxed, ratio=True))
-    rod_keys = {"rod_yield": "requirements.safety_factor", "rod_buckling": "mass.rod_buckling_factor"}
-    for name, least in rod_diameters(study, event).items():
-        relaxed = (rod_keys.get(name, "mass.least_rod_diameter"),)
-        blocks.append(Constraint(name, rod_diameter, least, True, "m", relaxed, ratio=True))
+    blocks = [c for m in study.damper.members(design) if m.inertia is not None for c in _arm(study, m, sized.event)]
+    for size in sized.sizes:
+        for name, (least, relaxed) in size.least.items():
+            blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
     least_stroke = required.stroke_ratio * required.apex_clearance
     relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
-    blocks.append(Constraint("working_stroke", event.stroke, least_stroke, True, "m", relaxed, ratio=True))
+    blocks.append(Constraint("working_stroke", sized.event.stroke, least_stroke, True, "m", relaxed, ratio=True))
     return [replace(block, kind="strength") for block in blocks]
 
 
-def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, event: LimitEvent, rod_diameter: Any) -> list[Constraint]:
+def _arm(study: Any, member: Member, event: LimitEvent) -> list[Constraint]:
+    """Static and fatigue strength of a bending arm."""
+    required, name = study.requirements, member.kind
+    stress = root_stress(member, event, study)
+    allowed = allowable_stress(study.material, required.safety_factor)
+    torque = ("requirements.limit_torque", "requirements.limit_torque_factor")
+    found = [Constraint(f"{name}_stress", stress, allowed, False, "Pa", ("requirements.safety_factor", *torque), ratio=True)]
+    if study.material.has_fatigue_data:
+        amplitude, cycles = required.fatigue.stress_fraction * stress, required.fatigue.cycles
+        endured = study.material.fatigue_strength_coefficient * (2 * cycles) ** study.material.fatigue_exponent
+        relaxed = ("requirements.fatigue.stress_fraction", "requirements.fatigue.cycles", *torque)
+        found.append(Constraint(f"{name}_fatigue", amplitude, endured, False, "Pa", relaxed, ratio=True))
+    return found
+
+
+def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: SizedLayout) -> list[Constraint]:
     """Lengths that the gear and its bay allow.
 
     Parameters
@@ -105,33 +109,29 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, event: Lim
     design : mapping
         Design variables by name.
     linkage : Linkage
-    event : LimitEvent
-    rod_diameter : SX
-        [m]
+    sized : SizedLayout
 
     Returns
     -------
     list of Constraint
     """
     required, model = study.requirements, study.mass
-    height = design["L"] * ca.cos(design["gamma"])
-    lugs, reach, keys = 2 * height, linkage.reach, ("requirements.lug_distance", "requirements.reach")
-    clearance = height + model.lower_lug_height - study.gear.wheel_radius
+    reach, keys = linkage.reach, ("requirements.lug_distance", "requirements.reach")
     blocks = [
-        Constraint("lug_distance_min", lugs, required.lug_distance.min, True, "m", (f"{keys[0]}.min",)),
-        Constraint("lug_distance_max", lugs, required.lug_distance.max, False, "m", (f"{keys[0]}.max",)),
         Constraint("reach_min", reach, required.reach.min, True, "m", (f"{keys[1]}.min",)),
         Constraint("reach_max", reach, required.reach.max, False, "m", (f"{keys[1]}.max",)),
-        Constraint(
-            "tyre_clearance",
-            clearance,
-            required.tyre_clearance,
-            True,
-            "m",
-            ("requirements.tyre_clearance", "mass.lower_lug_height"),
-        ),
     ]
-    if linkage.damper_length is not None:
-        needed = rod_length(study, event) + event.stroke + bore(study, event, rod_diameter)
-        blocks.append(Constraint("damper_length", linkage.damper_length, needed, True, "m", ("mass.dead_length",)))
+    if isinstance(study.damper, TorqueLinks):
+        height = design["L"] * cos(design["gamma"])
+        lugs, clearance = 2 * height, height + model.lower_lug_height - study.gear.wheel_radius
+        above = ("requirements.tyre_clearance", "mass.lower_lug_height")
+        blocks = [
+            Constraint("lug_distance_min", lugs, required.lug_distance.min, True, "m", (f"{keys[0]}.min",)),
+            Constraint("lug_distance_max", lugs, required.lug_distance.max, False, "m", (f"{keys[0]}.max",)),
+            *blocks,
+            Constraint("tyre_clearance", clearance, required.tyre_clearance, True, "m", above),
+        ]
+    if linkage.damper_length is not None and sized.needed_length is not None:
+        length, needed = linkage.damper_length, sized.needed_length
+        blocks.append(Constraint("damper_length", length, needed, True, "m", ("mass.dead_length",)))
     return blocks

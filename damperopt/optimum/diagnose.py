@@ -116,7 +116,7 @@ def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]
     if not reached:
         return Diagnosis(None, None)
     best = min(reached, key=lambda found: found.decay[0].ratio)
-    at_bounds = np.abs(best.solution.bound_multipliers[:-1]) > HOLDS_BACK
+    at_bounds = np.abs(best.solution.bound_multipliers[: len(problem.design_names)]) > HOLDS_BACK
     bounds = tuple(f"design.{v.name}" for v, at in zip(problem.variables, at_bounds, strict=False) if at)
     required, worst = problem.study.required.decay, best.decay[0]
     assert required is not None

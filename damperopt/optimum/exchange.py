@@ -191,6 +191,8 @@ def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence
 
 def _decays_moderately(problem: DesignProblem, design: Mapping[str, float]) -> bool:
     """Whether the linear gear decays, and not ten times as well as it must."""
+    if not problem.has_one_damping:
+        return True
     required, yaw = problem.study.required.decay, problem.yaw_numbers(design)
     assert required is not None
     k_psi, c_psi = (np.array([yaw[name]]) for name in ("torsional_stiffness", "torsional_damping"))
@@ -256,8 +258,9 @@ class DecayHold:
         learning_step: float,
     ) -> list[Cut]:
         """Cuts of (speed, load, value, d ln value/d ln design); curvature by symmetric rank-one updates of those before."""
-        x = self._problem.scaled(design)[:-1]
-        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in self._problem.variables[:-1]])
+        n = len(self._problem.design_names)
+        x = self._problem.scaled(design)[:n]
+        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in self._problem.variables[:n]])
         cuts = []
         for (speed, load, value, gradient), last in zip(numbers, before, strict=True):
             scaled = gradient * slopes
@@ -324,7 +327,7 @@ def solve_with_decay(
                 return EnvelopeSolution(solution, (), rounds, False)
             radius *= 4
             continue
-        step = np.abs(solution.x - solver.problem.scaled(design))[:-1].max()
+        step = np.abs(solution.x - solver.problem.scaled(design))[: len(design)].max()
         design = solution.design
         worst = worst_points(solver.problem.model.at(design), study.envelope, allowed)
         violating = [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]

@@ -41,10 +41,11 @@ def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
     """
     study = problem.study
     others = study.solver.starts - 1
-    if not others or all(v.lower == v.upper for v in problem.variables[:-1]):
+    if not others or all(v.lower == v.upper for v in problem.variables[: len(problem.design_names)]):
         return [study.start]
     promising = promising_designs(problem, (others + 1) // 2)
-    if not promising:  # nothing meets the requirements at any stiffness: most likely nothing does at all
+    if not promising and problem.has_one_damping:
+        # nothing meets the requirements at any stiffness: most likely nothing does at all
         others = min(others, HOPELESS)
     sobol = sobol_designs(problem, others - len(promising)).tolist()
     return [study.start, *promising, *(dict(zip(problem.design_names, row, strict=True)) for row in sobol)]

@@ -14,20 +14,18 @@ import casadi as ca
 import numpy as np
 
 from ..dynamics import build
-from ..linkages.planar import linkage
 from ..motion.decay import decay_analysis
 from ..motion.measure import PEAKS
-from ..objectives import limit_event, mass_parts, rod_diameters
+from ..objectives import sized_layout
+from ..quantities.named import DesignVariable
 from ..stability.linear import LinearModel
+from ..strength.limit_event import peaks_of
 from ..study.study import Study
-from ..study.variables import DESIGN_VARIABLES
 from ..symbols import data_names, data_values, symbolic
 from .constraints import Constraint, geometry, strength
 
 __all__ = ["DesignProblem", "ScaledVariable"]
 
-_LINEAR = ("gamma",)
-ROD = "rod_diameter"
 ESTIMATED = np.ones(len(PEAKS))
 """Factors of a limit event that is not simulated."""
 
@@ -61,9 +59,11 @@ class DesignProblem:
     Attributes
     ----------
     variables : tuple of ScaledVariable
-        Design variables and the rod diameter.
+        Design variables, then the sizes of parts that are chosen with them.
     constraints : tuple of Constraint
         Strength and geometry, in the order of `rows`.
+    has_one_damping, plain : bool
+        Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own.
     shifted_matrix : casadi.Function
         (design, data, speed, load) -> A + (margin + reserve) 1, stable iff the margin holds.
     """
@@ -71,7 +71,7 @@ class DesignProblem:
     def __init__(self, study: Study):
         self.study = study
         self.model = LinearModel(study)
-        self.design_names = DESIGN_VARIABLES[study.damper.topology]
+        self.design_names = study.variable_names
         self.data = np.array(data_values(study))
         self.data_names = data_names(study)
         self.load_limit = max(study.envelope.loads)
@@ -80,41 +80,48 @@ class DesignProblem:
         symbols = symbolic(study)
         dae = build(symbols)
         design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
-        rod, load = ca.SX.sym(ROD), ca.SX.sym("load_limit")
-        link = linkage(symbols.study.damper, design, symbols.study.material.youngs_modulus)
-        factors = ca.SX.sym("factors", len(PEAKS))
-        event = limit_event(symbols.study, link, design["c_lambda"], load, factors)
-        parts = mass_parts(symbols.study, design, link, event, rod)
+        load, factors = ca.SX.sym("load_limit"), ca.SX.sym("factors", len(PEAKS))
+        link = symbols.study.damper.linkage(design, symbols.study.material.youngs_modulus)
+        sized = sized_layout(symbols.study, design, link, load, [factors[i] for i in range(len(PEAKS))])
+        parts = sized.masses
         self.constraints: tuple[Constraint, ...] = tuple(
-            strength(symbols.study, design, event, rod) + geometry(symbols.study, design, link, event, rod)
+            strength(symbols.study, design, sized) + geometry(symbols.study, design, link, sized)
         )
+        self.sizes = sized.sizes
+        self.size_names = tuple(size.name for size in sized.sizes)
         self.part_names = tuple(parts)
         self.constraint_names = tuple(c.name for c in self.constraints)
-        inputs = [dae.design, rod, symbols.data, load, factors]
+        own = ca.vertcat(ca.SX(0, 1), *(size.symbol for size in sized.sizes))
+        inputs = [dae.design, own, symbols.data, load, factors]
         self._mass = ca.Function("mass", inputs, [ca.vertcat(*parts.values())])
         self._rows = ca.Function("rows", inputs, [ca.vertcat(*(c.row for c in self.constraints))])
         self._values = ca.Function("values", inputs, [ca.vertcat(*(ca.horzcat(c.value, c.limit) for c in self.constraints))])
-        without_rod = [*inputs[:1], *inputs[2:]]
-        self._rod = ca.Function("rod", without_rod, [ca.vertcat(*rod_diameters(symbols.study, event).values())])
-        self._event = ca.Function("event", without_rod, [event.peaks])
-        self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, link.torsional_damping])
+        without_sizes = [*inputs[:1], *inputs[2:]]
+        least = [ca.mmax(ca.vertcat(*(value for value, _ in size.least.values()))) for size in sized.sizes]
+        self._least = ca.Function("least", without_sizes, [ca.vertcat(ca.SX(0, 1), *least)])
+        self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
+        damping = symbols.study.damper.damping({**design, **link.as_printed})
+        self.has_one_damping = damping is not None
+        self.plain = self.has_one_damping and dae.x.numel() == len(study.gear.STATES) + len(study.tyre.states)
+        damping = ca.SX.nan() if damping is None else damping * link.damper_lever**2
+        self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, damping])
 
         margin = symbols.study.requirements.stability_margin + study.solver.margin_reserve
         shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
         shifted += margin * ca.SX.eye(dae.x.numel())
         self.shifted_matrix = ca.Function("shifted", [dae.design, symbols.data, dae.speed, dae.load], [shifted])
-        rod_variable = ScaledVariable(ROD, 0.02, 1e-5, 10.0, True)
-        self.variables = (*map(self._variable, self.design_names), rod_variable)
+        own_variables = [ScaledVariable(size.name, size.start, size.lower, size.upper, True) for size in sized.sizes]
+        self.variables = (*map(self._variable, self.study.variables), *own_variables)
 
-    def _variable(self, name: str) -> ScaledVariable:
-        given = self.study.variable(name)
-        return ScaledVariable(name, given.start, given.min, given.max, name not in _LINEAR)
+    def _variable(self, declared: DesignVariable) -> ScaledVariable:
+        given = self.study.variable(declared.name)
+        return ScaledVariable(declared.name, given.start, given.min, given.max, declared.logarithmic)
 
     def mass_and_rows(
-        self, design: ca.SX, rod: ca.SX, data: ca.SX, load_limit: ca.SX, factors: Any = ESTIMATED
+        self, design: ca.SX, sizes: ca.SX, data: ca.SX, load_limit: ca.SX, factors: Any = ESTIMATED
     ) -> tuple[ca.SX, ca.SX]:
         """Total mass [kg] and the strength and geometry rows (<= 0) as expressions."""
-        inputs = [design, rod, data, load_limit, factors]
+        inputs = [design, sizes, data, load_limit, factors]
         return ca.sum1(self._mass(*inputs)), self._rows(*inputs)
 
     def estimated_peaks(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> ca.SX:
@@ -127,7 +134,7 @@ class DesignProblem:
         return k_psi, c_psi
 
     def physical(self, x: ca.SX) -> ca.SX:
-        """Design variables and rod diameter [SI] of scaled variables."""
+        """Design variables and sizes of parts [SI] of scaled variables."""
         return ca.vertcat(*(ca.exp(x[i]) if v.logarithmic else x[i] for i, v in enumerate(self.variables)))
 
     # plain functions of a design, for reports, tests and other optimisers
@@ -170,9 +177,10 @@ class DesignProblem:
             self._factors = {key: simulated / estimated}  # the last design is asked for several times
         return self._factors[key]
 
-    def rod_diameter(self, design: Mapping[str, float]) -> float:
-        """Least rod diameter that meets yield and buckling [m]."""
-        return float(self._rod(self._vector(design), self.data, self.load_limit, self.factors(design)).full().max())
+    def least_sizes(self, design: Mapping[str, float]) -> dict[str, float]:
+        """Least size of each part that meets all its limits, such as the rod diameter [SI]."""
+        least = self._least(self._vector(design), self.data, self.load_limit, self.factors(design))
+        return dict(zip(self.size_names, least.full().ravel().tolist(), strict=True))
 
     def over_designs(self, designs: np.ndarray, factors: np.ndarray = ESTIMATED) -> dict[str, np.ndarray]:
         """Everything that needs no speed, for many designs at once.
@@ -190,11 +198,11 @@ class DesignProblem:
             ``mass`` (m,) [kg], ``rows`` (m, c) as `rows`, ``torsional_stiffness`` and ``torsional_damping`` (m,).
         """
         columns, data, load = designs.T, ca.DM(self.data), self.load_limit
-        rod = self._rod(columns, data, load, factors).full().max(axis=0)[None, :]
+        sizes = self._least(columns, data, load, factors).full()
         stiffness, damping = self._yaw(columns, data)
         return {
-            "mass": self._mass(columns, rod, data, load, factors).full().sum(axis=0),
-            "rows": self._rows(columns, rod, data, load, factors).full().T,
+            "mass": self._mass(columns, sizes, data, load, factors).full().sum(axis=0),
+            "rows": self._rows(columns, sizes, data, load, factors).full().T,
             "torsional_stiffness": stiffness.full().ravel(),
             "torsional_damping": damping.full().ravel(),
         }
@@ -203,21 +211,21 @@ class DesignProblem:
         return np.array([design[name] for name in self.design_names])
 
     def _call(self, function: ca.Function, design: Mapping[str, float]) -> list[float]:
-        rod, factors = self.rod_diameter(design), self.factors(design)
-        result = function(self._vector(design), rod, self.data, self.load_limit, factors)
+        sizes, factors = list(self.least_sizes(design).values()), self.factors(design)
+        result = function(self._vector(design), sizes, self.data, self.load_limit, factors)
         return result.full().ravel(order="F").tolist()
 
     # the scaled variables
 
     def scaled(self, design: Mapping[str, float]) -> np.ndarray:
-        """Scaled variables of a design, the rod sized a little above its limits (estimated, if they are simulated)."""
-        rod = float(self._rod(self._vector(design), self.data, self.load_limit, ESTIMATED).full().max())
-        full = {**design, ROD: 1.02 * rod}
+        """Scaled variables of a design, its sizes a little above their limits (estimated, if they are simulated)."""
+        least = self._least(self._vector(design), self.data, self.load_limit, ESTIMATED).full().ravel()
+        full = {**design, **dict(zip(self.size_names, 1.02 * least, strict=True))}
         return np.array([v.scale(full[v.name]) for v in self.variables])
 
     def unscaled(self, x: Sequence[float]) -> dict[str, float]:
-        """Design of scaled variables (the rod left out)."""
-        return {v.name: v.unscale(float(xi)) for v, xi in zip(self.variables, x, strict=True) if v.name != ROD}
+        """Design of scaled variables (the sizes of parts left out)."""
+        return {v.name: v.unscale(float(xi)) for v, xi in zip(self.variables, x, strict=True) if v.name in self.design_names}
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Bounds of the scaled variables."""

@@ -97,7 +97,8 @@ class _Slots:
         self.problem, self.slots, self.order = problem, slots, len(problem.model.state_names)
         self.x = ca.SX.sym("x", len(problem.variables))
         physical = problem.physical(self.x)
-        design, rod = physical[:-1], physical[-1]
+        n = len(problem.design_names)
+        design, sizes = physical[:n], physical[n:]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         V, F_z, self.rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
         self.p = ca.vertcat(data, load_limit, V, F_z, self.rate)
@@ -109,7 +110,7 @@ class _Slots:
             estimated = problem.estimated_peaks(design, data, load_limit)
             factors = ca.exp(simulated * (peaks.T @ monomials - ca.log(estimated)))
             self.p = ca.vertcat(self.p, simulated, ca.vec(peaks))
-        self.mass, self.rows = problem.mass_and_rows(design, rod, data, load_limit, factors)
+        self.mass, self.rows = problem.mass_and_rows(design, sizes, data, load_limit, factors)
         self.decay_rows, self.excess = ca.SX(0, 1), ca.SX(0, 1)
         if problem.study.required.decay is not None:
             self.excess = ca.SX.sym("excess")
@@ -156,7 +157,8 @@ class _Slots:
         """Scaled variables of a design and their bounds, no design variable further than `radius` from it."""
         lower, upper = self.problem.bounds()
         x0 = np.clip(self.problem.scaled(design), lower, upper)
-        around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
+        free = len(self.problem.size_names)
+        around = np.append(np.full(x0.size - free, radius), np.full(free, np.inf))  # sizes of parts follow the design
         return x0, np.maximum(lower, x0 - around), np.minimum(upper, x0 + around)
 
 

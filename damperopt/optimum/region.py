@@ -81,7 +81,7 @@ def feasible_region(
     designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
     found = problem.over_designs(designs, problem.factors(design))
     k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
-    if study.damper.link_stiffness is None and study.damper.series_stiffness is None:
+    if problem.plain:
         stability = least_conditions(study, k_psi, c_psi, worst)
     else:
         stability = -study.required.stability_margin - worst_abscissae_of(study, designs, worst)

@@ -50,7 +50,7 @@ def sobol_designs(problem: DesignProblem, count: int) -> np.ndarray:
     ndarray
         (count, n) design variables [SI]; the first ones do not depend on `count`.
     """
-    variables = problem.variables[:-1]
+    variables = problem.variables[: len(problem.design_names)]
     free = [i for i, v in enumerate(variables) if v.lower < v.upper]
     designs = np.tile([v.start for v in variables], (count, 1))
     if not free or not count:
@@ -103,6 +103,8 @@ def steady_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]
     list of dict
         At most `count` designs, the steadiest first, each in another stiffness of the grid.
     """
+    if not problem.has_one_damping:
+        return []
     k, c, start = _reachable(problem)
     K, C = np.meshgrid(k, c, indexing="ij")
     abscissa = worst_abscissae(problem.study, K.ravel(), C.ravel()).reshape(K.shape)
@@ -134,11 +136,11 @@ class _Layouts:
 
     def __init__(self, problem: DesignProblem, start: dict[str, float]):
         x = ca.SX.sym("x", len(problem.variables))
-        physical = problem.physical(x)
+        physical, n = problem.physical(x), len(problem.design_names)
         data, load = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         log_k, log_c = ca.SX.sym("log_k"), ca.SX.sym("log_c")
-        mass, rows = problem.mass_and_rows(physical[:-1], physical[-1], data, load)
-        k_psi, c_psi = problem.stiffness_and_damping(physical[:-1], data)
+        mass, rows = problem.mass_and_rows(physical[:n], physical[n:], data, load)
+        k_psi, c_psi = problem.stiffness_and_damping(physical[:n], data)
         nlp = {
             "x": x,
             "p": ca.vertcat(data, load, log_k, log_c),
@@ -168,6 +170,8 @@ class _Layouts:
 
 def promising_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]:
     """At most `count` designs at the local minima of the scan, the lightest first."""
+    if not problem.has_one_damping:
+        return []
     points = stiffness_scan(problem)
     mass = np.array([np.inf, *(point.mass for point in points), np.inf])
     minima = [p for p, before, here, after in zip(points, mass, mass[1:], mass[2:], strict=False) if before >= here <= after]

@@ -73,7 +73,7 @@ def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[],
         return plots.modes_before_after(before, after, result.stability_margin)
 
     found: dict[str, Callable[[], Any]] = {
-        "linkage": lambda: linkage(result.topology, result.design),
+        "linkage": lambda: linkage(study.damper, result.design),
         "mass": lambda: plots.mass_by_part(result),
         "modes": modes,
         "chart": lambda: chart_plot.chart(
@@ -103,13 +103,13 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     StabilityChart
     """
     assert result.stability is not None
-    spring = "k_lambda" if result.topology == "boeing" else "I_arm"
-    c, k = result.design["c_lambda"], result.design[spring]
+    damping, spring = study.variable_names[0], study.damper.SPRING
+    c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
     return chart(
         study,
-        ("c_lambda", 0.0, 2.5 * c),
+        (damping, 0.0, 2.5 * c),
         (spring, 0.0, 2.5 * k),
         vary=("speed", speeds),
         margin=margin,

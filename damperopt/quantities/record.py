@@ -5,18 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, StringConstraints, model_validator
 from pydantic_core import PydanticCustomError
 
+from ..reading import quoted, unprintable
 from .units import Quantity
 
-__all__ = ["LengthRange", "LoadRange", "Range", "Record", "SpeedRange", "quantity_of", "refuse"]
+__all__ = ["LengthRange", "LoadRange", "Name", "Range", "Record", "SpeedRange", "quantity_of", "refuse"]
+
+
+_LONGEST_MESSAGE = 300
 
 
 def refuse(key: str, what: str, allowed: str) -> PydanticCustomError:
     """Error about `key` (a path below the block that is checked; empty: the block itself)."""
+    if len(what) > _LONGEST_MESSAGE:
+        what = f"{what[:_LONGEST_MESSAGE]}..."
     return PydanticCustomError("study", "{what}; allowed: {allowed}", {"what": what, "allowed": allowed, "key": key})
 
+
+def _of_characters(text: str) -> str:
+    """Names come back in files, figures and terminals: no control characters, no half of a character pair."""
+    if words := unprintable(text):
+        raise refuse("", f"{quoted(text)} holds {words}", "printable text")
+    return text
+
+
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200), AfterValidator(_of_characters)]
+"""What a user calls a thing."""
 
 Length = Annotated[float, Quantity("m", above=0, example="0.6 m")]
 Coordinate = Annotated[float, Quantity("m", example="120 mm")]
@@ -28,9 +44,19 @@ TorsionalStiffness = Annotated[float, Quantity("N m/rad", at_least=0, example="3
 TorsionalDamping = Annotated[float, Quantity("N m s/rad", at_least=0, example="300 N m s/rad")]
 Force = Annotated[float, Quantity("N", above=0, example="150 kN")]
 Torque = Annotated[float, Quantity("N m", above=0, example="12 kN m")]
-Speed = Annotated[float, Quantity("m/s", above=0, at_most=1e4, example="120 kt")]
+Speed = Annotated[
+    float,
+    Quantity(
+        "m/s",
+        at_least=1e-3,
+        at_most=1e4,
+        example="120 kt",
+        hint="a wheel at rest does not shimmy, and 1/V has no value there; begin to taxi at a small speed, such as 1 kt",
+    ),
+]
 Time = Annotated[float, Quantity("s", above=0, example="3 s")]
 Stress = Annotated[float, Quantity("Pa", above=0, example="200 GPa")]
+Pressure = Annotated[float, Quantity("Pa", above=0, example="160 psi")]
 Density = Annotated[float, Quantity("kg/m^3", above=0, example="7850 kg/m^3")]
 Damping = Annotated[float, Quantity("N s/m", above=0, example="1e4 N s/m")]
 Stiffness = Annotated[float, Quantity("N/m", above=0, example="4 MN/m")]
@@ -51,7 +77,9 @@ class Range(Record):
     """A closed interval; `min` below `max`."""
 
     min: float
+    """Lower end, included."""
     max: float
+    """Upper end, included."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

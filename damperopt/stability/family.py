@@ -66,7 +66,7 @@ def powers_of(study: Any) -> Powers:
     -------
     Powers
     """
-    parts = [study.gear, study.tyre, getattr(study.tyre, "contact", None), getattr(study.tyre, "law", None), study.damper]
+    parts = [study.gear, study.tyre, getattr(study.tyre, "contact", study.tyre), study.damper]
     speed = [getattr(part, "SPEED_POWERS", Powers.speed) for part in parts]
     declared = [getattr(part, "LOAD_POWERS", Powers.load) for part in parts]
     load = [powers for powers in declared if powers is not None]

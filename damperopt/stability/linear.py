@@ -13,6 +13,7 @@ import numpy as np
 from ..dynamics import build
 from ..errors import ConfigError
 from ..expressions.dae import DAE
+from ..quantities.named import State
 from ..study.study import Study
 from ..symbols import data_values, symbolic
 from .family import Powers, powers_of
@@ -48,15 +49,24 @@ class LinearGear:
     ----------
     matrices : callable
         (speeds, loads), each (m,) or scalar [m/s], [N] -> (m, n, n) state matrices.
-    state_names : tuple of str
-        Names of the n states.
+    states : tuple of State
+        Declarations of the n states.
     powers : Powers
         Powers of speed and load in the matrices.
     """
 
     matrices: Callable[[Any, Any], np.ndarray]
-    state_names: tuple[str, ...]
+    states: tuple[State, ...]
     powers: Powers = field(default_factory=Powers)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(state.name for state in self.states)
+
+    def index(self, name: str) -> int:
+        """Position of a state."""
+        return self.state_names.index(name)
 
     def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
         """Spectral abscissa [1/s], (m,)."""
@@ -73,7 +83,7 @@ class LinearModel:
 
     def __init__(self, study: Study):
         dae = build(symbolic(study))
-        self.state_names = dae.state_names
+        self.states, self.state_names = dae.states, dae.state_names
         self.design_names = dae.design_names
         self.state_matrix = linearise(dae)
         self.powers = powers_of(study)
@@ -95,7 +105,7 @@ class LinearModel:
             columns = self.state_matrix(ca.repmat(values, 1, V.size), V.reshape(1, -1), F_z.reshape(1, -1), self._data)
             return columns.full().reshape(n, V.size, n).transpose(1, 0, 2)
 
-        return LinearGear(matrices, self.state_names, self.powers)
+        return LinearGear(matrices, self.states, self.powers)
 
 
 def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> LinearGear:

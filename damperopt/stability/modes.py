@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ..quantities.named import State
 from .linear import LinearGear
 
 __all__ = ["ModeTable", "track_modes"]
 
 FINE = 400
 """Speeds between the ends along which modes are followed, beside those asked for."""
+
+MODES = {"yaw": "torsional", "bending": "lateral"}
+"""What the field calls the modes of these degrees of freedom; others have the name of theirs."""
 
 LONGEST_REACH = 3.0
 """Longest extrapolation, in steps of the last one: beyond, rounding errors would steer it."""
@@ -29,7 +33,8 @@ class ModeTable:
     load : float
         [N]
     names : tuple of str
-        (n,) ``torsional``, ``lateral`` or ``string`` of each followed eigenvalue; a conjugate pair has one name.
+        (n,) ``torsional``, ``lateral``, ``string``, ``damper`` or another degree of freedom, of each followed eigenvalue; a
+        conjugate pair has one name.
     eigenvalues : ndarray
         (m, n) complex [1/s].
     """
@@ -103,18 +108,17 @@ def track_modes(gear: LinearGear, speeds: np.ndarray, load: float) -> ModeTable:
     own = np.searchsorted(fine, between)
     shares = np.mean([participation[k][:, order[k]] for k in own], axis=0)
     eigenvalues = np.array(followed)
-    names = _names(gear.state_names, shares, eigenvalues[own])
+    names = _names(gear.states, shares, eigenvalues[own])
     return ModeTable(speeds, load, names, eigenvalues[np.searchsorted(fine, speeds)])
 
 
-def _names(state_names: tuple[str, ...], shares: np.ndarray, followed: np.ndarray) -> tuple[str, ...]:
+def _names(states: tuple[State, ...], shares: np.ndarray, followed: np.ndarray) -> tuple[str, ...]:
     """Name of each mode: the degree of freedom that takes part most, each as often as it has states.
 
     Conjugate pairs choose first, among the degrees of freedom with two states, so that both roots have one name; the real
     roots share what is left.
     """
-    freedom = {"yaw": "torsional", "bending": "lateral", "string": "string"}
-    of_state = [freedom[name.split("_")[0]] for name in state_names]
+    of_state = [MODES.get(state.freedom, state.freedom) for state in states]
     freedoms = list(dict.fromkeys(of_state))
     together = np.array([sum(shares[i] for i, f in enumerate(of_state) if f == name) for name in freedoms])
 

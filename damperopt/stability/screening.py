@@ -7,11 +7,12 @@ speed give the characteristic polynomial of every design. Used to draw feasible 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ..study.study import Damper, Study
+from ..study.study import Study
 from ..symbols import data_values
 from .hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .linear import LinearModel, linear_gear, spectral_abscissa
@@ -140,8 +141,8 @@ def linear_decay(study: Study, k_psi: np.ndarray, c_psi: np.ndarray, per_cycle: 
     return worst
 
 
-def _damper(k_psi: float, c_psi: float) -> Damper:
-    return Damper(topology="rotational", torsional_stiffness=k_psi, torsional_damping=c_psi)
+def _damper(k_psi: float, c_psi: float) -> dict[str, Any]:
+    return {"topology": "rotational", "torsional_stiffness": k_psi, "torsional_damping": c_psi}
 
 
 def _points(study: Study, speeds: int, more: Sequence[tuple[float, float]] = ()) -> tuple[np.ndarray, np.ndarray]:

@@ -7,10 +7,11 @@ from typing import Annotated, Any, Self
 from pydantic import GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from ..quantities.record import Density, Record, Stress, refuse
+from ..quantities.record import Density, Name, Record, Stress, refuse
 from ..quantities.units import Quantity
+from ..reading import quoted
 
-__all__ = ["MATERIALS", "Material"]
+__all__ = ["MATERIALS", "Material", "allowable_stress"]
 
 # Young's modulus and strengths in Pa, density in kg/m^3. Sources: MMPDS-class handbook values for the metals
 # (300M and 4340 at the quoted heat treatments, Ti-6Al-4V solution treated and aged); Basquin sigma_a = sigma_f' (2N)^b
@@ -53,21 +54,29 @@ class Material(Record):
     Metals carry `yield_strength`; a laminate carries `design_strain` instead, and its allowable is E times that strain.
     """
 
-    name: str = "custom"
+    name: Name = "custom"
+    """Of the material, for tables."""
     youngs_modulus: Stress
+    """E [Pa]."""
     density: Density
+    """Mass per volume [kg/m^3]."""
     yield_strength: Stress | None = None
+    """Of a metal [Pa]."""
     ultimate_strength: Stress | None = None
+    """Of a metal, at rupture [Pa]."""
     design_strain: Annotated[float, Quantity("1", above=0, below=0.1)] | None = None
+    """Of a laminate: its allowable stress is E times this [1]."""
     fatigue_strength_coefficient: Stress | None = None
+    """sigma_f' of Basquin's law [Pa]."""
     fatigue_exponent: Annotated[float, Quantity("1", above=-1, below=0)] | None = None
+    """b of Basquin's law, negative [1]."""
 
     @model_validator(mode="before")
     @classmethod
     def _named(cls, data: Any) -> Any:
         if isinstance(data, str):
             if data not in MATERIALS:
-                raise refuse("", f"'{data}' is no known material", ", ".join(MATERIALS) + ", or the numbers as a mapping")
+                raise refuse("", f"{quoted(data)} is no known material", ", ".join(MATERIALS) + ", or the numbers as a mapping")
             return {"name": data, **MATERIALS[data]}
         return data
 
@@ -86,3 +95,10 @@ class Material(Record):
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [{"enum": list(MATERIALS)}, handler.resolve_ref_schema(handler(schema))]}
+
+
+def allowable_stress(material: Any, safety_factor: Any) -> Any:
+    """Allowable stress at the limit event [Pa]: yield over the safety factor, or E times the design strain."""
+    if material.design_strain is not None:
+        return material.youngs_modulus * material.design_strain
+    return material.yield_strength / safety_factor

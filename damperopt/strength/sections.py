@@ -27,7 +27,7 @@ def shape_numbers(section: Any) -> tuple[Any, Any]:
 
     Examples
     --------
-    >>> from damperopt.sizing import Section
+    >>> from damperopt.ports.section import Section
     >>> kappa_A, kappa_h = shape_numbers(Section(family="solid_round"))
     >>> round(kappa_A, 6), round(kappa_h, 6)  # 2 sqrt(pi), (4/pi)^(1/4)
     (3.544908, 1.062252)

@@ -3,39 +3,24 @@
 from __future__ import annotations
 
 import difflib
-import re
-import reprlib
+import types
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
-import yaml
 from pydantic import BaseModel, ValidationError
 
 from ..errors import ConfigError
 from ..quantities.record import quantity_of
+from ..reading import printable, quoted, text_of
+from . import schema
+from .components import gears
+from .document import dotted, few, read
 from .study import Study
 
-__all__ = ["json_schema", "load", "loads", "parsed", "text_of"]
+__all__ = ["is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
 
 Record = TypeVar("Record", bound=BaseModel)
-
-
-class _Loader(yaml.SafeLoader):
-    """YAML with numbers as engineers write them and no duplicate keys."""
-
-
-# YAML 1.1, as PyYAML reads it, takes 1e5 for text and yes/no for booleans
-_Loader.yaml_implicit_resolvers = {
-    first: [(tag, rule) for tag, rule in rules if tag not in ("tag:yaml.org,2002:float", "tag:yaml.org,2002:bool")]
-    for first, rules in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
-_Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float",
-    re.compile(r"^[-+]?(?:(?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|\.(?:inf|Inf|INF))$|^\.(?:nan|NaN|NAN)$"),
-    list("-+0123456789."),
-)
 
 
 def load(path: str | Path) -> Study:
@@ -56,22 +41,6 @@ def load(path: str | Path) -> Study:
         With one message per problem, each ``file:line: key.path: what; allowed: ...``.
     """
     return loads(text_of(path), str(path))
-
-
-def text_of(path: str | Path) -> str:
-    """Text of a file that a user names.
-
-    Raises
-    ------
-    ConfigError
-        If it cannot be read.
-    """
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}; allowed: a readable YAML file") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: is not UTF-8 text (byte {error.start}); allowed: a YAML text file") from error
 
 
 def loads(text: str, name: str = "<text>") -> Study:
@@ -96,6 +65,15 @@ def loads(text: str, name: str = "<text>") -> Study:
     return parsed(text, name, Study)[0]
 
 
+def is_sweep(text: str, name: str) -> bool:
+    """Whether a text describes a sweep: a base that is varied."""
+    return _describes_a_sweep(read(text, name, "the keys of a study, or of a sweep").data)
+
+
+def _describes_a_sweep(data: dict[str, Any]) -> bool:
+    return "base" in data and not {"gear", "tyre", "damper"} & set(data)
+
+
 def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tuple, int]]:
     """A record of any class from YAML text, and the line of every key path in it.
 
@@ -117,99 +95,78 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
     ConfigError
         As `load`.
     """
-    loader = None
-    try:
-        loader = _Loader(text)
-        root = loader.get_single_node()
-        if not isinstance(root, yaml.MappingNode):
-            raise ConfigError(f"{name}:1: the file is not a mapping of keys; allowed: {', '.join(model.model_fields)}")
-        lines: dict[tuple, int] = {}
-        duplicates = _index(root, (), lines, name)
-        if duplicates:
-            raise ConfigError(duplicates)
-        data = loader.construct_document(root)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = mark.line + 1 if mark else 1
-        raise ConfigError(f"{name}:{line}: not valid YAML: {error.problem or error.context}") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ConfigError(f"{name}:1: not valid YAML: {error}") from error
-    finally:
-        if loader is not None:
-            loader.dispose()
-    if empty := _empty(root, (), name, model):
-        raise ConfigError(empty)
+    document = read(text, name, ", ".join(model.model_fields))
+    data, lines, name = document.data, document.lines, printable(name)
+    if model is Study and _describes_a_sweep(data):
+        raise ConfigError(
+            f"{name}:{lines[('base',)]}: base: this is a sweep, not a study; allowed: a study here, or 'damperopt sweep'"
+        )
+    if document.empty:
+        # an empty block would drop a requirement without a word
+        raise ConfigError([
+            f"{name}:{lines[path]}: {dotted(path)}: found nothing; allowed: {_allowed_at(path, model)}; or leave the key out"
+            for path in document.empty
+        ])  # fmt: skip
     try:
         return model.model_validate(data), lines
     except ValidationError as error:
-        problems = [_message(problem, data, lines, name, model) for problem in error.errors(include_url=False)]
-        raise ConfigError([text for _, text in sorted(set(problems))]) from None
+        found = _without_other_branches(error.errors(include_url=False))
+        problems = [_message(problem, data, lines, name, model) for problem in found]
+        raise ConfigError(few([text for _, text in sorted(set(problems))])) from None
+
+
+def _without_other_branches(problems: Sequence[Any]) -> list[Any]:
+    """Without 'no list' where a block was meant and has problems of its own, and the like."""
+
+    def other(problem: Any) -> bool:
+        *start, _ = problem["loc"] or ("",)
+        deeper = (found["loc"] for found in problems if len(found["loc"]) > len(problem["loc"]))
+        return problem["type"] in ("list_type", "model_type", "dict_type") and any(
+            list(loc[: len(start)]) == start for loc in deeper
+        )
+
+    return [problem for problem in problems if not other(problem)]
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema of a configuration file, for editors."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Study.model_json_schema()}
-
-
-def _index(node: yaml.Node, path: tuple, lines: dict[tuple, int], name: str) -> list[str]:
-    """Line of every key path below `node`, into `lines`; messages about duplicate keys."""
-    lines.setdefault(path, node.start_mark.line + 1)
-    problems: list[str] = []
-    if isinstance(node, yaml.MappingNode):
-        seen: dict[str, int] = {}
-        for key_node, value_node in node.value:
-            key, line = key_node.value, key_node.start_mark.line + 1
-            if not isinstance(key, str):
-                problems.append(f"{name}:{line}: {_dotted(path)}: a key is no text; allowed: text keys")
-                continue
-            if key in seen:
-                where = _dotted((*path, key))
-                problems.append(f"{name}:{line}: {where}: duplicate key, first on line {seen[key]}; allowed: each key once")
-            seen[key] = line
-            lines[(*path, key)] = line
-            problems += _index(value_node, (*path, key), lines, name)
-    elif isinstance(node, yaml.SequenceNode):
-        for position, item in enumerate(node.value):
-            problems += _index(item, (*path, position), lines, name)
-    return problems
-
-
-def _empty(node: yaml.Node, path: tuple, name: str, model: type[BaseModel]) -> list[str]:
-    """Messages about keys with nothing behind them: an empty block would drop a requirement without a word."""
-    if isinstance(node, yaml.MappingNode):
-        items = [(key.value, value) for key, value in node.value]
-    elif isinstance(node, yaml.SequenceNode):
-        items = list(enumerate(node.value))
-    else:
-        if node.tag != "tag:yaml.org,2002:null":
-            return []
-        allowed = _allowed_at(path, model)
-        return [f"{name}:{node.start_mark.line + 1}: {_dotted(path)}: found nothing; allowed: {allowed}; or leave the key out"]
-    return [text for key, value in items for text in _empty(value, (*path, key), name, model)]
+    """JSON Schema of a study, for editors."""
+    found = schema.json_schema(Study)
+    for kind in gears().values():
+        # older studies name a gear by its order
+        order = kind.ORDER if kind.EXTENDS is None else gears()[kind.EXTENDS[0]].ORDER
+        block = found["$defs"].get(kind.__name__)
+        if order is not None and block is not None:
+            block["properties"]["order"] = {
+                "const": order,
+                "description": f"An older name of this kind, or kind: {kind.__name__}.",
+            }
+            block["required"].remove("kind")
+            block["anyOf"] = [{"required": ["kind"]}, {"required": ["order"]}]
+    return found
 
 
 def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model: type[BaseModel]) -> tuple[int, str]:
     context = problem.get("ctx", {})
-    path = _path_in_file(problem["loc"], data) + tuple(filter(None, context.get("key", "").split(".")))
+    path = _path_in_file(problem["loc"], data, problem["type"] == "missing") + tuple(
+        filter(None, context.get("key", "").split("."))
+    )
     known = path
     while known not in lines:
         known = known[:-1]
     what = _what(problem, path, model)
-    return lines[known], f"{name}:{lines[known]}: {_dotted(path)}: {what}"
+    return lines[known], f"{name}:{lines[known]}: {dotted(path)}: {what}"
 
 
-def _path_in_file(location: Sequence[Any], data: Any) -> tuple:
-    """Location without the union tags that pydantic inserts."""
+def _path_in_file(location: Sequence[Any], data: Any, missing: bool) -> tuple:
+    """Location without the tags of unions that pydantic inserts: what is not in the data, but for a key that is missing."""
     path: list[Any] = []
     for position, step in enumerate(location):
         inside = isinstance(data, dict) and step in data
         inside = inside or (isinstance(data, list) and isinstance(step, int) and step < len(data))
         if inside:
             data = data[step]
-        elif position < len(location) - 1 or not isinstance(step, str) or isinstance(data, (list, str, float, int)):
-            continue  # a tag of a union, or a scalar that stands for a list
-        elif step[:1].isupper() and step not in ("I_arm", "L"):
-            continue  # a tag: the name of a record class
+        elif position < len(location) - 1 or not missing:
+            continue
         path.append(step)
     return tuple(path)
 
@@ -218,7 +175,7 @@ def _what(problem: Any, path: tuple, model: type[BaseModel]) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     if kind in ("quantity", "study"):
         return problem["msg"]
-    found = _Shortened(problem.get("input"))
+    found = quoted(problem.get("input"))
     if kind == "missing":
         return f"missing key; allowed: {_allowed_at(path, model)}"
     if kind == "extra_forbidden":
@@ -227,65 +184,101 @@ def _what(problem: Any, path: tuple, model: type[BaseModel]) -> str:
         hint = f" (did you mean '{close[0]}'?)" if close else ""
         return f"unknown key{hint}; allowed: {', '.join(siblings) or 'none'}"
     if kind == "literal_error":
-        return f"{found!r} is not one of the choices; allowed: {context['expected']}"
+        return f"{found} is not one of the choices; allowed: {context['expected']}"
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         tags = "'nonlinear', 'linear', 'straight_tangent'"
-        return f"{'missing' if kind.endswith('found') else repr(context.get('tag'))} tyre law; allowed: law: {tags}"
-    if kind.startswith("model_") or kind in ("dict_type", "model_type"):
-        return f"found {found!r} instead of a block; allowed: a mapping with the keys {', '.join(_keys_at(path, model))}"
+        return f"{'missing' if kind.endswith('found') else quoted(context.get('tag'))} tyre law; allowed: law: {tags}"
+    if kind.startswith("model_") or kind == "dict_type":
+        return f"found {found} instead of a block; allowed: {_allowed_at(path, model)}"
     if kind == "list_type":
-        return f"found {found!r} instead of a list; allowed: a list of items, each {_allowed_at(path, model)}"
-    return f"found {found!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path, model)}"
-
-
-class _Shortened:
-    """Value whose repr fits into a message."""
-
-    def __init__(self, value: Any):
-        self.value = value
-
-    def __repr__(self) -> str:
-        return reprlib.repr(self.value)
-
-    __str__ = __repr__
+        return f"found {found} instead of a list; allowed: {_allowed_at(path, model)}"
+    if kind == "value_error":
+        return problem["msg"].removeprefix("Value error, ")
+    return f"found {found}; {problem['msg'][0].lower()}{problem['msg'][1:]}; allowed: {_allowed_at(path, model)}"
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:
-    """Record classes inside an annotation."""
+    """Record classes that an annotation may stand for; those behind the keys of a mapping are not."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
+    if get_origin(annotation) is dict:
+        return []
     return [model for part in getattr(annotation, "__args__", ()) for model in _models(part)]
 
 
-def _fields_at(path: tuple, model: type[BaseModel]) -> list[Any]:
-    fields: list[Any] = []
-    models: list[type[BaseModel]] = [model]
+def _types_at(path: tuple, model: type[BaseModel]) -> list[Any]:
+    """Types that may stand at a key path, with what limits them."""
+    found: list[Any] = [model]
     for key in path:
-        if isinstance(key, int):
-            continue
-        fields = [inner.model_fields[key] for inner in models if key in inner.model_fields]
-        models = [inner for field in fields for inner in _models(field.annotation)]
-    return fields
+        found = [inner for annotation in found for inner in _types_behind(key, annotation)]
+    return found
+
+
+def _types_behind(key: Any, annotation: Any) -> list[Any]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        fields = [field for name, field in annotation.model_fields.items() if key in (name, field.alias)]
+        return [Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation for field in fields]
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is dict:
+        return [parts[1]]
+    if origin in (list, tuple) and isinstance(key, int):
+        return [parts[min(key, len(parts) - 1)]]
+    return [inner for part in getattr(annotation, "__args__", ()) for inner in _types_behind(key, part)]
 
 
 def _keys_at(path: tuple, model: type[BaseModel]) -> list[str]:
-    models = [inner for field in _fields_at(path, model) for inner in _models(field.annotation)] if path else [model]
-    return list(dict.fromkeys(key for inner in models for key in inner.model_fields))
+    models = [inner for annotation in _types_at(path, model) for inner in _models(annotation)]
+    return list(dict.fromkeys(field.alias or key for inner in models for key, field in inner.model_fields.items()))
 
 
 def _allowed_at(path: tuple, model: type[BaseModel]) -> str:
-    for field in _fields_at(path, model):
-        quantity = quantity_of(field.annotation, field.metadata)
+    behind = _types_at(path, model)
+    for annotation in behind:
+        quantity = quantity_of(annotation)
         if quantity:
             return quantity.describe()
-    for field in _fields_at(path, model):
-        limits = {k: v for m in field.metadata for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
+    for annotation in behind:
+        limits = {k: v for m in _notes(annotation) for k in ("ge", "le") if (v := getattr(m, k, None)) is not None}
         if limits:
             words = [f"{sign} {limits[k]}" for k, sign in (("ge", ">="), ("le", "<=")) if k in limits]
             return f"a whole number, {' and '.join(words)}"
     keys = _keys_at(path, model)
-    return f"a mapping with the keys {', '.join(keys)}" if keys else "see 'damperopt init' for an example"
+    words = [f"a mapping with the keys {', '.join(keys)}"] if keys else []
+    others = [part for annotation in behind for part in _parts(annotation) if not (keys and _models(part))]
+    words += [_in_words(part) for part in others]
+    return " or ".join(dict.fromkeys(words)) or "see the documentation, 'A study, key by key'"
 
 
-def _dotted(path: tuple) -> str:
-    return ".".join(str(key) for key in path) or "(file)"
+def _notes(annotation: Any) -> list[Any]:
+    """What limits a number, however deep pydantic packs it."""
+    notes = list(getattr(annotation, "__metadata__", ()))
+    return notes + [note for outer in notes for note in getattr(outer, "metadata", ())]
+
+
+def _parts(annotation: Any) -> list[Any]:
+    """What a union is made of."""
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _parts(parts[0])
+    if origin in (Union, types.UnionType):
+        return [inner for part in parts if part is not type(None) for inner in _parts(part)]
+    return [annotation]
+
+
+def _in_words(annotation: Any) -> str:
+    """What a field takes that is neither a quantity nor a block."""
+    plain = {str: "text", bool: "true or false", int: "a whole number", float: "a number", Any: "a value"}
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _in_words(parts[0])
+    if origin is Literal:
+        return " or ".join(map(repr, parts))
+    if origin in (list, tuple):
+        inside = [_in_words(part) for part in parts if part not in (..., Any)]
+        return "a list" + (f", each item {' or '.join(dict.fromkeys(inside))}" if inside else "")
+    if origin is dict:
+        return f"a mapping of key paths, each with {_in_words(parts[1])}"
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return "{" + ", ".join(field.alias or name for name, field in annotation.model_fields.items()) + "}"
+    inside = [part for part in parts if part is not type(None)]
+    return " or ".join(dict.fromkeys(map(_in_words, inside))) if inside else plain.get(annotation, "text")

@@ -27,21 +27,27 @@ class Release(_SomethingMoves):
     """The gear is let go at rest from these angles, the tyre's string straight."""
 
     yaw_angle: _Angle = 0.0
+    """Of the piston about the strut axis [rad]."""
     bending_angle: _Angle = 0.0
+    """Lateral, of the strut [rad]."""
     string_deflection: Annotated[float, Quantity("m", above=-1.0, below=1.0, example="5 mm")] = 0.0
+    """Of the tyre at its leading contact point [m]."""
 
 
 class Kick(_SomethingMoves):
     """The gear starts in its rest position with these rates."""
 
     yaw_rate: _Rate = 0.0
+    """Of the piston about the strut axis [rad/s]."""
     bending_rate: _Rate = 0.0
+    """Lateral, of the strut [rad/s]."""
 
 
 class Step(_SomethingMoves):
     """A torque about the strut axis acts from the start."""
 
     yaw_torque: Annotated[float, Quantity("N m", example="2 kN m")]
+    """About the strut axis, from the start on [N m]."""
 
 
 class Unbalance(_SomethingMoves):
@@ -51,6 +57,7 @@ class Unbalance(_SomethingMoves):
     """
 
     moment: Annotated[float, Quantity("kg m^2", example="0.01 kg m^2")]
+    """Mass times radius times lateral distance from the strut axis [kg m^2]."""
 
 
 class Disturbance(Record):

@@ -1,42 +1,41 @@
-"""Records of what a design must meet and of the mass model, with their documented defaults."""
+"""Records of what a design must meet, with their documented defaults."""
 
 from __future__ import annotations
 
-import fractions
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from ..quantities.record import (
-    Coordinate,
-    Density,
     Distance,
-    Fraction,
     Length,
     LengthRange,
     Number,
     Rate,
     Record,
     Speed,
-    Stress,
     Torque,
     refuse,
 )
 from ..quantities.units import Quantity
-from ..strength.materials import Material
+from ..reading import quoted
 from .disturbances import Disturbance, Kick, Release
 
-__all__ = ["DecayRequirement", "Fatigue", "MassModel", "Requirements", "Section"]
+__all__ = ["DecayRequirement", "Fatigue", "Requirements"]
+
+
+_FRACTION = re.compile(r"\s*(0|[1-9][0-9]{0,8})\s*/\s*([1-9][0-9]{0,8})\s*")
 
 
 def _fraction(found: Any) -> Any:
     """1/3 as a number; everything else as it is."""
     if not isinstance(found, str) or "/" not in found:
         return found
-    try:
-        return float(fractions.Fraction(found.replace(" ", "")))
-    except (ValueError, ZeroDivisionError):
-        raise refuse("", f"'{found}' is no fraction", "a number such as 0.3, or a fraction such as 1/3") from None
+    parts = _FRACTION.fullmatch(found)
+    if not parts:
+        raise refuse("", f"{quoted(found)} is no fraction", "a number such as 0.3, or a fraction such as 1/3")
+    return int(parts[1]) / int(parts[2])
 
 
 _Ratio = Annotated[
@@ -47,7 +46,7 @@ _Ratio = Annotated[
         {
             "anyOf": [
                 {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-                {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*0*[1-9][0-9]*\s*$"},
+                {"type": "string", "pattern": r"^\s*(0|[1-9][0-9]{0,8})\s*/\s*[1-9][0-9]{0,8}\s*$"},
             ]
         }
     ),
@@ -58,16 +57,22 @@ class Fatigue(Record):
     """Fatigue life of the bending arm: `cycles` at `stress_fraction` of the limit-event stress (Basquin)."""
 
     stress_fraction: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.5
+    """Amplitude of the repeated stress, as a part of that of the limit event [1]."""
     cycles: Annotated[float, Quantity("1", at_least=1)] = 1e6
+    """Cycles to be survived [1]."""
 
 
 class DecayRequirement(Record):
     """|yaw| <= `ratio` times its first extremum at all times after `cycles` cycles that follow a disturbance."""
 
     ratio: _Ratio = 1 / 3
+    """Of |yaw| to its first extremum, allowed after the cycles [1]."""
     cycles: Annotated[int, Field(strict=True, ge=1, le=100)] = 3
+    """Cycles that follow the disturbance."""
     release: Release | None = None
+    """The gear is let go from an angle; this or a kick."""
     kick: Kick | None = None
+    """The gear starts with a rate; this or a release."""
     speeds: list[Speed] | None = None
     """Speeds to look at [m/s]; left out: the worst of the envelope is sought."""
 
@@ -98,9 +103,11 @@ class Requirements(Record):
     limit_torque: Torque | None = None
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5
+    """Limit torque over the peak that the tyre can make, where no limit_torque is given [1]."""
     safety_factor: Annotated[float, Quantity("1", at_least=1)] = 1.5
     """On yield strength at the limit event."""
     fatigue: Fatigue = Fatigue()
+    """Fatigue of the bending arm."""
     apex_clearance: Length = 0.127e-3
     """Free clearance at the apex joint [m]; 0.127 mm is the figure of a 737."""
     stroke_ratio: Number = 10.0
@@ -116,72 +123,4 @@ class Requirements(Record):
     def _motions_to_size_by(self) -> Self:
         if self.limit_event == "simulated" and self.decay is None:
             raise refuse("decay", "missing key", "the block decay, whose motions limit_event 'simulated' takes its peaks from")
-        return self
-
-
-class Section(Record):
-    """Cross-section family of a beam: one shape at every size.
-
-    tube: wall over outer diameter `thickness_ratio`; rectangle: `aspect_ratio` height over width (bending along the
-    height); i_section: `aspect_ratio` height over flange width, `thickness_ratio` flange and web thickness over height.
-    """
-
-    family: Literal["solid_round", "tube", "rectangle", "i_section"] = "tube"
-    thickness_ratio: Annotated[float, Quantity("1", above=0, below=0.5)] | None = None
-    aspect_ratio: Number | None = None
-
-    @model_validator(mode="after")
-    def _shape(self) -> Self:
-        needs = {
-            "solid_round": set(),
-            "tube": {"thickness_ratio"},
-            "rectangle": {"aspect_ratio"},
-            "i_section": {"thickness_ratio", "aspect_ratio"},
-        }[self.family]
-        given = {key for key in ("thickness_ratio", "aspect_ratio") if getattr(self, key) is not None}
-        if given != needs:
-            raise refuse(
-                "", f"family '{self.family}' was given {sorted(given) or 'no ratio'}", f"exactly {sorted(needs) or 'no ratio'}"
-            )
-        if self.thickness_ratio and self.aspect_ratio and self.thickness_ratio * self.aspect_ratio >= 1:
-            raise refuse("", "the web is as wide as the flange", "thickness_ratio * aspect_ratio < 1")
-        return self
-
-
-_TUBE = Section(family="tube", thickness_ratio=0.1)
-
-
-class MassModel(Record):
-    """Numbers of the mass model; the defaults suit a main gear and are explained in the documentation."""
-
-    arm_section: Section = _TUBE
-    link_section: Section = _TUBE
-    support_section: Section = _TUBE
-    cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
-    """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
-    link_fittings_fraction: Fraction = 0.2
-    """Lugs, pins and bushings, as a fraction of the mass of links, bending arm and support arm."""
-    damper_material: Material = Material.model_validate("AISI 4340")
-    """Cylinder, rod, caps and Belleville spring; a metal."""
-    working_pressure: Stress = 20.7e6
-    """Peak damper pressure at the limit event [Pa] (3000 psi)."""
-    dead_length: Length = 0.12
-    """Damper length that is not stroke: eyes, glands, piston [m]."""
-    wall_allowance: Distance = 2e-3
-    """Added to the wall and caps that pressure needs [m]."""
-    least_rod_diameter: Length = 0.012
-    """Thinnest rod that is made [m]."""
-    rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
-    oil_density: Density = 860.0
-    damper_fittings_fraction: Fraction = 0.5
-    """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
-    spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3
-    """Stored energy of a Belleville stack over that of the same volume under uniform stress."""
-    lower_lug_height: Coordinate = 0.0
-    """Height of the lower torque-link hinge above the wheel axle [m]."""
-
-    @model_validator(mode="after")
-    def _damper_is_metal(self) -> Self:
-        if self.damper_material.yield_strength is None:
-            raise refuse("damper_material", f"'{self.damper_material.name}' has no yield strength", "a metal")
         return self

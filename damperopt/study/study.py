@@ -7,220 +7,50 @@ in a notebook they can be made directly or changed with `Study.replace`.
 from __future__ import annotations
 
 from html import escape
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Self
 
 import yaml
-from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag, ValidationError, WithJsonSchema, model_validator
+from pydantic import ValidationError, model_validator
 
 from ..errors import ConfigError
-from ..linkages.joints import EndStop, Freeplay, Friction, Orifice
-from ..quantities.record import (
-    Angle,
-    Coordinate,
-    Force,
-    Inertia,
-    Length,
-    LoadRange,
-    Record,
-    SeriesStiffness,
-    SpeedRange,
-    TorsionalDamping,
-    TorsionalStiffness,
-    quantity_of,
-    refuse,
-)
-from ..quantities.units import Quantity
+from ..quantities.named import DesignVariable
+from ..quantities.record import Name, Record, quantity_of, refuse
+from ..reading import printable
 from ..strength.materials import Material
-from .requirements import MassModel, Requirements
-from .variables import DESIGN_VARIABLES, TOPOLOGIES, Design, Solver, Variable
+from .changes import changed
+from .components import DAMPER, GEAR, TYRE
+from .envelope import Envelope
+from .mass_model import MassModel
+from .requirements import Requirements
+from .solver import Solver
+from .variables import Design, Variable
 
-__all__ = [
-    "Damper",
-    "Envelope",
-    "Gear",
-    "LateralMode",
-    "LinearTyre",
-    "StraightTangentTyre",
-    "StringTyre",
-    "Study",
-    "unit_of",
-]
-
-
-class LateralMode(Record):
-    """Lateral bending of the strut about its attachment; only the fifth-order gear has it."""
-
-    inertia: Inertia
-    stiffness: TorsionalStiffness
-    damping: TorsionalDamping
-    height: Length
-
-
-class Gear(Record):
-    """Landing gear. `order` 3: yaw and tyre string; 5: lateral bending too (a `lateral` block is then required)."""
-
-    order: Literal[3, 5]
-    yaw_inertia: Inertia
-    caster_length: Coordinate
-    rake_angle: Angle = 0.0
-    wheel_radius: Length
-    lateral: LateralMode | None = None
-    friction: Friction | None = None
-
-    @model_validator(mode="after")
-    def _lateral_of_fifth_order(self) -> Self:
-        if self.order == 5 and self.lateral is None:
-            raise refuse("lateral", "missing key", "order 5 needs the block lateral (inertia, stiffness, damping, height)")
-        return self
-
-
-class _Tyre(Record):
-    half_contact_length: Length
-    relaxation_length: Length
-    tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
-    slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
-    """Slip angle up to which the law is trusted; a simulation stops there [rad]."""
-
-
-class StringTyre(_Tyre):
-    """Stretched string with the nonlinear side force C_F X cos(0.95 X) F_z, X = atan(7 tan(alpha)) (slope 7 C_F)."""
-
-    law: Literal["nonlinear"]
-    cornering_coefficient: Annotated[float, Quantity("1/rad", at_least=0)]
-    aligning_coefficient: Annotated[float, Quantity("m/rad")]
-    aligning_slip_limit: Annotated[float, Quantity("rad", above=0, below=1.5, example="10 deg")]
-
-
-class LinearTyre(_Tyre):
-    """Stretched string with F_y = cornering_slope alpha F_z and M_z = aligning_coefficient alpha F_z."""
-
-    law: Literal["linear"]
-    cornering_slope: Annotated[float, Quantity("1/rad", at_least=0)]
-    aligning_coefficient: Annotated[float, Quantity("m/rad")]
-
-
-class StraightTangentTyre(_Tyre):
-    """Straight-tangent tyre: F_y = cornering_stiffness y/sigma, M_z = aligning_stiffness y/sigma, for any load.
-
-    `carcass_stiffness` (lateral, per unit length of the string) stands for both; see `tyres.straight_tangent_stiffnesses`.
-    """
-
-    law: Literal["straight_tangent"]
-    cornering_stiffness: Annotated[float, Quantity("N/rad", at_least=0)] | None = None
-    aligning_stiffness: Annotated[float, Quantity("N m/rad")] | None = None
-    carcass_stiffness: Annotated[float, Quantity("N/m^2", above=0)] | None = None
-
-    @model_validator(mode="after")
-    def _one_way(self) -> Self:
-        both = self.cornering_stiffness is not None and self.aligning_stiffness is not None
-        either = self.cornering_stiffness is not None or self.aligning_stiffness is not None
-        if not (both if self.carcass_stiffness is None else not either):
-            raise refuse(
-                "", "incomplete or double stiffness", "cornering_stiffness and aligning_stiffness, or carcass_stiffness alone"
-            )
-        return self
-
-
-Tyre = Annotated[StringTyre | LinearTyre | StraightTangentTyre, Field(discriminator="law")]
-
-
-class Damper(Record):
-    """Layout of the shimmy damper and level of its geometry.
-
-    `rotational` takes `torsional_stiffness` and `torsional_damping` about the yaw axis as they are.
-    """
-
-    topology: Literal["boeing", "utas", "arreaza", "rotational"]
-    geometry: Literal["published", "planar", "spatial"] = "planar"
-    torsional_stiffness: TorsionalStiffness | None = None
-    torsional_damping: TorsionalDamping | None = None
-    link_stiffness: SeriesStiffness | None = None
-    """Of the torque links, laterally at the apex, in series with the linkage [N/m]."""
-    series_stiffness: SeriesStiffness | None = None
-    """Of oil column, rod and brackets, in series with the damper [N/m]."""
-    orifice: Orifice | None = None
-    freeplay: Freeplay | None = None
-    end_stop: EndStop | None = None
-
-    @model_validator(mode="after")
-    def _given_for_rotational_only(self) -> Self:
-        given = [key for key in ("torsional_stiffness", "torsional_damping") if getattr(self, key) is not None]
-        if self.topology == "rotational" and len(given) < 2:
-            raise refuse(
-                "",
-                "topology 'rotational' lacks torsional_stiffness or torsional_damping",
-                "both, in N m/rad and N m s/rad",
-            )
-        if self.topology != "rotational" and given:
-            raise refuse(
-                given[0],
-                "belongs to topology 'rotational' only",
-                f"topology '{self.topology}' takes its stiffness and damping from the design variables",
-            )
-        if self.topology == "rotational":
-            for key in ("link_stiffness", "series_stiffness", "orifice", "freeplay", "end_stop"):
-                if getattr(self, key) is not None:
-                    raise refuse(key, "topology 'rotational' has no linkage that it could belong to", "the other topologies")
-        return self
-
-
-class Envelope(Record):
-    """Where the gear must be stable: every speed of a range, at one load, a list of loads, or a range of loads."""
-
-    speed: SpeedRange
-    vertical_load: Annotated[
-        Annotated[LoadRange, Tag("LoadRange")] | Annotated[list[Force], Tag("list")],
-        Discriminator(lambda data: "LoadRange" if isinstance(data, (dict, LoadRange)) else "list"),
-        BeforeValidator(lambda data: data if isinstance(data, (dict, list, LoadRange)) else [data]),
-        WithJsonSchema(
-            {
-                "anyOf": [
-                    {"type": ["number", "string"], "description": "[N]"},
-                    {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 1},
-                    {
-                        "type": "object",
-                        "properties": {"min": {"type": ["number", "string"]}, "max": {"type": ["number", "string"]}},
-                        "required": ["min", "max"],
-                        "additionalProperties": False,
-                    },
-                ]
-            }
-        ),
-    ]
-
-    @model_validator(mode="after")
-    def _some_load(self) -> Self:
-        if isinstance(self.vertical_load, list):
-            if not self.vertical_load:
-                raise refuse("vertical_load", "an empty list", "one load or more, or {min, max}")
-            if len(set(self.vertical_load)) < len(self.vertical_load):
-                raise refuse("vertical_load", "names a load twice", "different loads")
-        return self
-
-    @property
-    def loads(self) -> tuple[float, ...]:
-        """Vertical loads [N]: the list, or the two ends of the range."""
-        load = self.vertical_load
-        return (load.min, load.max) if isinstance(load, LoadRange) else tuple(load)
-
-    @property
-    def load_is_range(self) -> bool:
-        return isinstance(self.vertical_load, LoadRange)
+__all__ = ["Study", "unit_of"]
 
 
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
 
-    name: str
-    gear: Gear
-    tyre: Tyre
-    damper: Damper
+    name: Name
+    """Of the study; folders and figures carry it."""
+    gear: GEAR
+    """What moves: inertias, lengths, bending."""
+    tyre: TYRE
+    """How the ground acts on the wheel: a slip law and a contact line."""
+    damper: DAMPER
+    """Layout of the shimmy damper, and its kind."""
     material: Material = Material.model_validate("AISI 4340")
+    """Of links, bending arm and support arm: a name of the library, or the numbers."""
     envelope: Envelope
+    """Speeds and loads at which the requirements hold."""
     requirements: Requirements | None = None
+    """What a design must meet; needed where there is something to design."""
     design: Design = Design()
+    """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()
+    """Numbers of the mass model."""
     solver: Solver = Solver()
+    """Numbers of the solution method."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -230,26 +60,36 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
-        topology = self.damper.topology
-        missing = [name for name in DESIGN_VARIABLES[topology] if getattr(self.design, name) is None]
+        topology, names = self.damper.topology, self.variable_names
+        missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
-            raise refuse(
-                f"design.{missing[0]}",
-                "missing key",
-                f"topology '{topology}' needs design variables {', '.join(DESIGN_VARIABLES[topology])}",
-            )
-        if topology in TOPOLOGIES:
+            allowed = f"topology '{topology}' needs design variables {', '.join(names)}"
+            raise refuse(f"design.{missing[0]}", "missing key", allowed)
+        if names:
             if self.requirements is None:
                 raise refuse("requirements", "missing key", f"the block requirements, which topology '{topology}' needs")
-            tyre = self.tyre
-            peakless = tyre.law != "nonlinear" or tyre.aligning_coefficient == tyre.cornering_coefficient == 0
-            if self.requirements.limit_torque is None and peakless:
+            if self.requirements.limit_torque is None and not self._tyre_has_a_peak():
                 raise refuse(
                     "requirements.limit_torque",
                     "missing key",
-                    f"a torque: this tyre (law '{tyre.law}') has no peak moment to derive it from",
+                    f"a torque: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def _tyre_has_a_peak(self) -> bool:
+        peaks = self.tyre.peaks(max(self.envelope.loads), self.tyre.pressure)
+        return peaks is not None and bool(peaks.side_force or peaks.aligning_moment)
+
+    @property
+    def variables(self) -> tuple[DesignVariable, ...]:
+        """Design variables of damper and layout, in the order of every table and file."""
+        variables: tuple[DesignVariable, ...] = self.damper.VARIABLES
+        return variables
+
+    @property
+    def variable_names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(variable.name for variable in self.variables)
 
     @property
     def required(self) -> Requirements:
@@ -266,7 +106,7 @@ class Study(Record):
     @property
     def start(self) -> dict[str, float]:
         """Design at the starts of the layout's design variables [SI]."""
-        return {name: self.variable(name).start for name in DESIGN_VARIABLES[self.damper.topology]}
+        return {name: self.variable(name).start for name in self.variable_names}
 
     def _repr_html_(self) -> str:
         """The study as notebooks show it: every key, in SI."""
@@ -291,15 +131,10 @@ class Study(Record):
         ConfigError
             If a key does not exist or the new study is not valid.
         """
-        data = self.model_dump()
-        for path, value in changes.items():
-            *parents, leaf = path.split("__")
-            block = data
-            for key in parents:
-                if block.get(key) is None:
-                    block[key] = {}
-                block = block[key]
-            block[leaf] = value.model_dump() if isinstance(value, BaseModel) else value
+        data = self.model_dump(exclude_none=True)
+        if "gear__order" in changes:  # an older way to name the kind, which would contradict it
+            data["gear"].pop("kind")
+        data = changed(data, {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)
         except ValidationError as error:
@@ -307,9 +142,12 @@ class Study(Record):
 
 
 def _problem_in_words(problem: Any) -> str:
-    path = [*problem["loc"], *filter(None, [problem.get("ctx", {}).get("key")])]
+    path = [
+        *(step for step in problem["loc"] if not str(step).startswith("<")),
+        *filter(None, [problem.get("ctx", {}).get("key")]),
+    ]
     what = "unknown key" if problem["type"] == "extra_forbidden" else problem["msg"]
-    return f"{'.'.join(map(str, path))}: {what}"
+    return f"{printable('.'.join(map(str, path)))}: {what}"
 
 
 def unit_of(study: Study, path: str) -> str:

@@ -32,18 +32,26 @@ class Range(_Record):
     """Evenly spaced values, or in even ratios."""
 
     start: Any = Field(alias="from")
+    """First value, with a unit as the key takes it."""
     stop: Any = Field(alias="to")
+    """Last value."""
     points: Annotated[int, Field(strict=True, ge=2, le=100_000)]
+    """How many values, ends included."""
     spacing: Literal["linear", "log"] = "linear"
+    """Even steps, or even ratios."""
 
 
 class Distribution(_Record):
     """One of the families; numbers with units as the key takes them."""
 
     uniform: tuple[Any, Any] | None = None
+    """Between two ends: [low, high]."""
     log_uniform: tuple[Any, Any] | None = None
+    """Between two ends, even in the logarithm: [low, high]."""
     normal: tuple[Any, Any] | None = None
+    """Gaussian: [mean, standard deviation]."""
     triangular: tuple[Any, Any, Any] | None = None
+    """Linear up to a mode and down again: [low, mode, high]."""
 
     @model_validator(mode="after")
     def _one(self) -> Distribution:
@@ -56,22 +64,34 @@ class Samples(_Record):
     """Points drawn at random or evenly spread."""
 
     method: Literal["sobol", "latin_hypercube", "random"] = "sobol"
+    """How points are spread."""
     count: Annotated[int, Field(strict=True, ge=1, le=MOST_POINTS)]
+    """Samples at every point of the grid."""
     seed: Annotated[int, Field(strict=True, ge=0)] = 0
+    """The same seed gives the same samples."""
     over: dict[str, Distribution] = Field(min_length=1)
+    """A distribution for each key path of the study."""
 
 
 class SweepSpec(_Record):
     """A sweep as its file gives it."""
 
     name: str = "sweep"
+    """Of the sweep; its folder carries it."""
     base: str
+    """The study that is varied: a path from the folder of this file."""
     run: Literal["optimise", "analyse"] = "optimise"
+    """What is done at every point."""
     set: dict[str, Any] = {}
+    """Changes of the base by key path, before anything is varied."""
     vary: dict[str, list[Any] | Range] = {}
+    """A grid: a list of values or a range {from, to, points} for each key path."""
     samples: Samples | None = None
+    """Points drawn over key paths, at every point of the grid."""
     warm_start: bool = True
+    """Whether a point also starts from the design of a finished neighbour."""
     eigenvalue_speeds: Annotated[int, Field(strict=True, ge=2, le=10_000)] = 40
+    """Speeds at which eigenvalues are stored."""
 
     @model_validator(mode="after")
     def _something(self) -> SweepSpec:

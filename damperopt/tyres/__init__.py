@@ -1,4 +1,4 @@
-"""Tyres: how the string meets the ground, and what a slip angle makes of it."""
+"""Tyres: a contact line says how the string meets the ground, a slip law what a slip angle makes of it."""
 
 from __future__ import annotations
 

@@ -14,9 +14,10 @@ import pytest
 import yaml
 
 import damperopt
-from damperopt.study.requirements import MassModel, Requirements
-from damperopt.study.study import Gear
-from damperopt.study.variables import Solver
+from damperopt.gears.yaw_bending import YawBending
+from damperopt.study.mass_model import MassModel
+from damperopt.study.requirements import Requirements
+from damperopt.study.solver import Solver
 
 pytestmark = pytest.mark.slow
 
@@ -196,7 +197,7 @@ def test_schema_accepts_every_shipped_study_and_refuses_unknown_keys(configs, tm
 
 def test_starter_shows_every_key_with_its_default():
     starter = Path(damperopt.__file__).with_name("starter.yaml").read_text()
-    for record in (MassModel, Solver, Requirements, Gear):
+    for record in (MassModel, Solver, Requirements, YawBending):
         for key in record.model_fields:
             assert f"{key}:" in starter, key
 

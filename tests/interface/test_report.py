@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt.figures.linkage import parts_of
+from damperopt.linkages.assembly import layouts
 from damperopt.output import report_of, write_report
 from damperopt.output.gallery import write_design
 
@@ -128,7 +128,10 @@ DESIGN = {"L": 0.6, "gamma": np.deg2rad(31.0), "b": 0.2}
 @pytest.mark.parametrize("topology", ["boeing", "utas", "arreaza"])
 def test_parts_of_the_drawing_are_those_of_the_theory(topology):
     """Links of length L, arm of UTAS hypot(L, b), damper of the new design b and at right angles to the link."""
-    parts = {part.name: np.subtract(part.end, part.start) for part in parts_of(topology, DESIGN)}
+    parts = {
+        part.name: np.subtract(part.end, part.start)
+        for part in layouts()[topology].model_construct(topology=topology).members(DESIGN)
+    }
     assert np.linalg.norm(parts["lower torque link"]) == pytest.approx(0.6)
     if topology == "utas":
         assert np.linalg.norm(parts["bending arm"]) == pytest.approx(np.hypot(0.6, 0.2))

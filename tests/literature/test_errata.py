@@ -21,7 +21,6 @@ from damperopt.literature.arreaza2015.charts import MISPRINTS_OF
 from damperopt.literature.arreaza2015.printed import COEFFICIENTS, MISPRINTS
 from damperopt.stability.hurwitz import characteristic_polynomial, hurwitz_determinants
 from damperopt.stability.linear import LinearModel
-from damperopt.study.study import Damper
 
 printed_boeing, printed_utas, printed_new_design = (COEFFICIENTS[layout] for layout in ("boeing", "utas", "arreaza"))
 
@@ -490,7 +489,7 @@ def topology(request):
 def published(main_gear, topology):
     """The package's gear with the thesis' geometry; c_delta = 0 where the thesis leaves it out."""
     study = main_gear.replace(
-        damper=Damper(topology=topology, geometry="published"),
+        damper={"topology": topology, "geometry": "published"},
         material={"youngs_modulus": 207e9, "density": 7850.0, "yield_strength": 1e9},
         gear__lateral__damping=300.0 if topology == "arreaza" else 0.0,
     )

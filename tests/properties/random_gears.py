@@ -14,7 +14,7 @@ LINEAR_TYRE = {
 """Tyre of thesis Table 0.1 (slope 7 C_F), linear."""
 
 STRAIGHT_TANGENT_TYRE = {
-    "law": "straight_tangent",
+    "law": "stiffness",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "tread_width_moment": 570.0,
@@ -63,7 +63,7 @@ def random_gear(rng, base, order=None, spread=1.0, **changes):
     def sign():
         return float(rng.choice([1, 1, 1, -1]))
 
-    law = str(rng.choice(["nonlinear", "linear", "straight_tangent"], p=[0.5, 0.25, 0.25]))
+    law = str(rng.choice(["nonlinear", "linear", "stiffness"], p=[0.5, 0.25, 0.25]))
     tyre = {
         "law": law,
         "half_contact_length": near(0.1),

@@ -36,7 +36,7 @@ def with_spinning_wheel(study, polar_inertia):
         A[:, 3, 1] -= h / gear.lateral.inertia
         return A
 
-    return LinearGear(matrices, plain.state_names)
+    return LinearGear(matrices, plain.states)
 
 
 def model_with_spinning_wheel(study, polar_inertia):
@@ -78,6 +78,17 @@ def test_worst_point_and_certificate_of_a_spinning_wheel(nose_gear, polar_inerti
     assert not certify(beyond, {}, 0.0, model=model).proved
 
 
+def test_the_gear_with_a_spinning_wheel_is_the_one_built_by_hand(nose_gear):
+    """`wheel_polar_inertia` in the study: critical speeds, and a certificate on either side of the first."""
+    study = nose_gear.replace(gear__wheel_polar_inertia=10.0, envelope__vertical_load=150e3)
+    by_hand = critical_speeds(with_spinning_wheel(nose_gear, 10.0), 150e3, 2.0, 200.0)
+    found = critical_speeds(linear_gear(study), 150e3, 2.0, 200.0)
+    assert [c.speed for c in found] == pytest.approx([c.speed for c in by_hand], rel=SAME_SPEED)
+    first = found[0].speed
+    assert certify(study.replace(envelope__speed={"min": 2.0, "max": first - 1e-6}), {}, 0.0).proved
+    assert not certify(study.replace(envelope__speed={"min": 2.0, "max": first + 1e-6}), {}, 0.0).proved
+
+
 @pytest.mark.parametrize("powers", [(-2, -1, 0, 1, 2), (-1, 2), (0, 3), (-3, 0)])
 def test_any_powers_of_speed_are_followed(powers):
     """Random matrices: every change of the number of unstable roots on a fine grid lies at a critical speed."""
@@ -90,7 +101,7 @@ def test_any_powers_of_speed_are_followed(powers):
             V = np.atleast_1d(speeds)[:, None, None] / 10.0
             return sum(V**i * part for i, part in parts.items())
 
-        gear = LinearGear(matrices, tuple("abcde"), Powers(tuple(sorted(parts)), (0,)))
+        gear = LinearGear(matrices, (), Powers(tuple(sorted(parts)), (0,)))
         speeds = np.geomspace(2.0, 50.0, 4000)
         counts = (np.linalg.eigvals(matrices(speeds, 1.0)).real > 0).sum(axis=1)
         expected = np.zeros(len(speeds) - 1)
@@ -136,7 +147,7 @@ def test_powers_are_those_of_all_components():
     assert powers_of(study()) == Powers((-1, 0, 1), (0, 1))
     assert powers_of(study(gear=spinning, tyre=soft)) == Powers((-1, 0, 1, 2), (0, 1, 2))
     assert powers_of(study(tyre=tabulated, damper=soft)) == Powers((-1, 0, 1), None)
-    assert powers_of(study(tyre=SimpleNamespace(contact=spinning, law=tabulated))) == Powers((-1, 0, 1, 2), None)
+    assert powers_of(study(tyre=SimpleNamespace(contact=spinning, LOAD_POWERS=None))) == Powers((-1, 0, 1, 2), None)
 
 
 def test_a_gear_that_does_not_keep_its_powers_is_refused(nose_gear):
@@ -148,10 +159,10 @@ def test_a_gear_that_does_not_keep_its_powers_is_refused(nose_gear):
         A[:, 1, 1] -= 1e-6 * np.broadcast_to(np.asarray(speeds, float), len(A)) ** 2
         return A
 
-    gear = LinearGear(matrices, plain.state_names)
+    gear = LinearGear(matrices, plain.states)
     with pytest.raises(ConfigError, match="no combination of the powers -1, 0, 1 of the speed"):
         critical_speeds(gear, 1.5e5, 5.0, 100.0)
-    declared = LinearGear(matrices, plain.state_names, Powers((-1, 0, 1, 2)))
+    declared = LinearGear(matrices, plain.states, Powers((-1, 0, 1, 2)))
     assert len(critical_speeds(declared, 1.5e5, 5.0, 100.0)) == 2
 
 

@@ -4,11 +4,9 @@ import casadi as ca
 import numpy as np
 import pytest
 from basic_twin import LAYOUT, planar_coefficients, planar_torque, published_coefficients
+from components_of import coefficients_of, damper_of
 from scipy.integrate import quad
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, QUADRATURE, ROUNDING
-
-from damperopt.linkages.planar import linkage
-from damperopt.study.study import Damper
 
 E = 207e9
 DESIGN = LAYOUT | {"c_lambda": 2.0e4, "k_lambda": 3.8e6, "I_arm": 3.4e-6}
@@ -24,22 +22,26 @@ def topology(request):
 
 @pytest.fixture
 def planar(topology):
-    return linkage(Damper(topology=topology), DESIGN, E)
+    return linkage_of(topology=topology)
 
 
 @pytest.fixture
 def published(topology):
-    return linkage(Damper(topology=topology, geometry="published"), DESIGN, E)
+    return linkage_of(topology=topology, geometry="published")
+
+
+def linkage_of(**block):
+    return damper_of(**block).linkage(DESIGN, E)
 
 
 def number(expression):
     return float(ca.evalf(ca.SX(expression)))
 
 
-def torque(found, psi, rate):
+def torque(found, psi, rate, c_lambda=DESIGN["c_lambda"]):
     """Virtual work of the spring force along the deflection and of the damper force along the stroke."""
     at = found.at(psi)
-    spring, damper = found.stiffness * at.deflection, found.damping * at.damper_lever * rate
+    spring, damper = found.stiffness * at.deflection, found.as_printed.get("c_lambda", c_lambda) * at.damper_lever * rate
     return -number(spring * at.spring_lever + damper * at.damper_lever)
 
 
@@ -82,7 +84,7 @@ def test_levers_are_derivatives_of_the_lengths(topology, planar):
 
 def test_planar_utas_levers_by_hand():
     """ell 0.30902, b 0.2, R 0.36810 m: eps lever ell^2/R = 0.25943 m, damper lever ell b/R = 0.16790 m."""
-    found = linkage(Damper(topology="utas"), DESIGN, E)
+    found = linkage_of(topology="utas")
     assert number(found.spring_lever) == pytest.approx(0.25943, abs=1e-5)
     assert number(found.damper_lever) == pytest.approx(0.16790, abs=1e-5)
 
@@ -107,11 +109,12 @@ def test_torque_of_the_damper_has_the_power_that_the_damper_burns(topology, plan
 
 @pytest.mark.parametrize("geometry", ["planar", "published"])
 def test_stiffness_and_damping_are_the_linear_part_of_the_torque(topology, geometry):
-    found = linkage(Damper(topology=topology, geometry=geometry), DESIGN, E)
+    damper = damper_of(topology=topology, geometry=geometry)
+    found, (stiffness, damping) = damper.linkage(DESIGN, E), coefficients_of(damper, DESIGN, E)
     k_psi = -derivative(lambda psi: torque(found, psi, 0.0), 0.0)
     c_psi = -torque(found, 0.0, 1.0)
-    assert number(found.torsional_stiffness) == pytest.approx(k_psi, rel=CENTRAL_DIFFERENCE)
-    assert number(found.torsional_damping) == pytest.approx(c_psi, rel=ROUNDING)
+    assert stiffness == pytest.approx(k_psi, rel=CENTRAL_DIFFERENCE)
+    assert damping == pytest.approx(c_psi, rel=ROUNDING)
 
 
 def test_planar_torque_is_that_of_the_twin(topology, planar):
@@ -121,16 +124,15 @@ def test_planar_torque_is_that_of_the_twin(topology, planar):
             assert torque(planar, psi, rate) == pytest.approx(twin(psi, rate), rel=ROUNDING)
 
 
-def test_planar_coefficients_by_the_formulas_of_the_theory_page(topology, planar):
+def test_planar_coefficients_by_the_formulas_of_the_theory_page(topology):
     """Section 3; for UTAS k = (3 E I/R^3)(ell sin(alpha_arm))^2 and c = c_lambda ell^2 b^2/R^2."""
-    k_psi, c_psi = planar_coefficients(topology, E, **DESIGN)
-    assert number(planar.torsional_stiffness) == pytest.approx(k_psi, rel=ROUNDING)
-    assert number(planar.torsional_damping) == pytest.approx(c_psi, rel=ROUNDING)
+    expected = planar_coefficients(topology, E, **DESIGN)
+    assert coefficients_of(damper_of(topology=topology), DESIGN, E) == pytest.approx(expected, rel=ROUNDING)
 
 
 def test_planar_utas_damping_over_the_yaw_angle():
     """Section 3: (ds/dpsi)^2 = ell^2 b^2 cos^2(psi)/s^2 with s^2 = ell^2 + b^2 - 2 ell b sin(psi)."""
-    found = linkage(Damper(topology="utas"), DESIGN, E)
+    found = linkage_of(topology="utas")
     for psi in ANGLES:
         lever2 = (ELL * B * np.cos(psi)) ** 2 / (ELL**2 + B**2 - 2 * ELL * B * np.sin(psi))
         damping = torque(found, psi, 0.0) - torque(found, psi, 1.0)
@@ -140,7 +142,7 @@ def test_planar_utas_damping_over_the_yaw_angle():
 def test_planar_utas_torque_is_asymmetric():
     """The others are odd in (psi, psi'); the damper of UTAS has the longer lever where it shortens."""
     for name in ("boeing", "utas", "arreaza"):
-        found = linkage(Damper(topology=name), DESIGN, E)
+        found = linkage_of(topology=name)
         left, right = torque(found, 0.3, 2.0), torque(found, -0.3, -2.0)
         if name == "utas":
             assert left < -right - 1.0
@@ -151,7 +153,7 @@ def test_planar_utas_torque_is_asymmetric():
 def test_arm_stiffness_of_the_new_design_is_that_of_a_cantilever():
     """Double integral of the curvature under a unit tip force gives the tip stiffness; ell is both arm and lever."""
     flexibility = quad(lambda x: (ELL - x) ** 2 / (E * DESIGN["I_arm"]), 0.0, ELL)[0]
-    found = linkage(Damper(topology="arreaza"), DESIGN, E)
+    found = linkage_of(topology="arreaza")
     assert number(found.torsional_stiffness) == pytest.approx(ELL**2 / flexibility, rel=QUADRATURE)
 
 
@@ -169,7 +171,7 @@ def test_published_geometry_keeps_levers_and_lengths_of_the_planar_one(planar, p
 
 
 def test_lengths_seen_from_the_top():
-    lengths = {name: linkage(Damper(topology=name), DESIGN, E) for name in ("boeing", "utas", "arreaza")}
+    lengths = {name: linkage_of(topology=name) for name in ("boeing", "utas", "arreaza")}
     assert all(number(found.reach) == pytest.approx(ELL, rel=ROUNDING) for found in lengths.values())
     assert (lengths["boeing"].arm_length, lengths["boeing"].damper_length) == (None, None)
     assert (number(lengths["utas"].arm_length), number(lengths["utas"].damper_length)) == pytest.approx((R, R), rel=ROUNDING)
@@ -179,10 +181,9 @@ def test_lengths_seen_from_the_top():
 
 
 def test_rotational_damper_is_what_it_is_given():
-    damper = Damper(topology="rotational", torsional_stiffness=3.8e5, torsional_damping=300.0)
-    found = linkage(damper, {}, E)
-    assert (found.torsional_stiffness, found.torsional_damping) == (3.8e5, 300.0)
-    assert torque(found, 0.1, 2.0) == pytest.approx(-3.8e4 - 600.0, rel=ROUNDING)
+    damper = damper_of(topology="rotational", torsional_stiffness=3.8e5, torsional_damping=300.0)
+    assert coefficients_of(damper, {}, E) == (3.8e5, 300.0)
+    assert torque(damper.linkage({}, E), 0.1, 2.0, 300.0) == pytest.approx(-3.8e4 - 600.0, rel=ROUNDING)
 
 
 @pytest.mark.parametrize("geometry", ["planar", "published"])
@@ -190,8 +191,7 @@ def test_damping_is_proportional_to_the_damper_and_stiffness_to_the_spring(topol
     """And neither depends on the other."""
 
     def coefficients(**changes):
-        found = linkage(Damper(topology=topology, geometry=geometry), DESIGN | changes, E)
-        return number(found.torsional_stiffness), number(found.torsional_damping)
+        return coefficients_of(damper_of(topology=topology, geometry=geometry), DESIGN | changes, E)
 
     spring = "k_lambda" if topology == "boeing" else "I_arm"
     k_psi, c_psi = coefficients()

@@ -16,6 +16,7 @@ from basic_twin import (
     right_hand_side,
     state_matrix,
 )
+from components_of import TWIN_LAWS
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
@@ -51,7 +52,7 @@ TYRES = {
         "aligning_coefficient": 0.5,
     },
     "straight_tangent": {
-        "law": "straight_tangent",
+        "law": "stiffness",
         "half_contact_length": 0.1,
         "relaxation_length": 0.4,
         "cornering_stiffness": 4.0e5,
@@ -134,9 +135,9 @@ def twin(study):
         k_psi, c_psi = planar_coefficients(damper.topology, E_STEEL, **DESIGN)
         torque = planar_torque(damper.topology, E_STEEL, **DESIGN)
     slopes = {
-        "nonlinear": ("cornering_coefficient", "aligning_coefficient"),
+        "arctangent": ("cornering_coefficient", "aligning_coefficient"),
         "linear": ("cornering_slope", "aligning_coefficient"),
-        "straight_tangent": ("cornering_stiffness", "aligning_stiffness"),
+        "stiffness": ("cornering_stiffness", "aligning_stiffness"),
     }[tyre.law]
     return parameters(
         I_z=gear.yaw_inertia,
@@ -150,7 +151,7 @@ def twin(study):
         a=tyre.half_contact_length,
         sigma=tyre.relaxation_length,
         kappa=tyre.tread_width_moment,
-        law=tyre.law,
+        law=TWIN_LAWS[tyre.law],
         C_F=getattr(tyre, slopes[0]),
         C_M=getattr(tyre, slopes[1]),
         alpha_m=getattr(tyre, "aligning_slip_limit", None),

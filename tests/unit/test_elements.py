@@ -1,11 +1,10 @@
 """Corners and compliances: elements against piecewise formulas, linear dampers against springs and dashpots in series."""
 
-from types import SimpleNamespace
-
 import casadi as ca
 import numpy as np
 import pytest
 from basic_twin import LAYOUT, parameters, spectral_abscissa, state_matrix
+from components_of import damper_of
 from tolerances import (
     CENTRAL_DIFFERENCE,
     CENTRAL_DIFFERENCE_STEP,
@@ -15,10 +14,13 @@ from tolerances import (
     STATIC_STIFFNESS,
 )
 
+from damperopt.dampers.base import Context
+from damperopt.dampers.hydraulic import Orifice
 from damperopt.expressions.corners import Linear, Smooth, Switched
-from damperopt.linkages.base import Linkage, Position
-from damperopt.linkages.joints import EndStop, Freeplay, Orifice
+from damperopt.linkages.joints import EndStop, Freeplay
 from damperopt.linkages.torque import damper_torque
+from damperopt.ports.linkage import Linkage, Position
+from damperopt.ports.motion import Attachment
 from damperopt.stability.linear import LinearModel
 
 WIDTH, GAP = 1e-3, 0.25
@@ -152,14 +154,14 @@ K, C, REACH, LEVER = 4.0e6, 2.0e4, 0.31, 0.25
 
 
 def straight():
-    return Linkage(K, C, lambda psi: Position(REACH * psi, REACH, LEVER * psi, LEVER), REACH, LEVER, REACH)
+    return Linkage(K, lambda psi: Position(REACH * psi, REACH, LEVER * psi, LEVER), REACH, LEVER, REACH)
 
 
 def torque_of(elements=None, **joints):
     """Torque as a function (psi, psi', own states) of a rigid linkage with these joints."""
-    joints = {"link_stiffness": None, "series_stiffness": None, "orifice": None, "freeplay": None, "end_stop": None} | joints
     psi, rate = ca.SX.sym("psi"), ca.SX.sym("rate")
-    made = damper_torque(SimpleNamespace(**joints), straight(), elements or Smooth(), psi, rate)
+    damper, design = damper_of(topology="boeing", **joints), {"c_lambda": C}
+    made = damper_torque(damper, straight(), design, elements or Smooth(), Attachment(psi, rate), Context())
     states = ca.vertcat(ca.SX(0, 1), *made.states.values())
     outputs = [made.torque, ca.vertcat(ca.SX(0, 1), *made.rates.values()), made.outputs["damper_force"]]
     return ca.Function("torque", [psi, rate, states], outputs)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from basic_twin import LAYOUT
+from components_of import VARIABLES
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from tolerances import CONVERGED, ENERGY, EVENT_MOTION, FIRST_ORDER, INTEGRATED
@@ -10,7 +11,6 @@ from tolerances import CONVERGED, ENERGY, EVENT_MOTION, FIRST_ORDER, INTEGRATED
 from damperopt.motion.exact import ExactSimulator, simulate_exactly
 from damperopt.motion.simulate import Simulator
 from damperopt.motion.trajectory import motion_of
-from damperopt.study.variables import DESIGN_VARIABLES
 
 SPEED, LOAD, INERTIA = 40.0, 150e3, 100.0
 DESIGN = LAYOUT | {"c_lambda": 3.0e3, "k_lambda": 3.8e6, "I_arm": 3.4e-6}
@@ -51,7 +51,7 @@ def impatient(monkeypatch):
 
 
 def design_of(topology, **changes):
-    return {name: value for name, value in (DESIGN | changes).items() if name in DESIGN_VARIABLES[topology]}
+    return {name: value for name, value in (DESIGN | changes).items() if name in VARIABLES[topology]}
 
 
 # -------------------------------------------------------------------------------------------------------- dry friction

@@ -8,6 +8,7 @@ import flint
 import numpy as np
 import pytest
 from basic_twin import effective_caster, parameters, state_matrix
+from components_of import TWIN_LAWS
 
 from damperopt import CertificateError
 from damperopt.proof import rationals as exact
@@ -198,7 +199,7 @@ def test_what_has_no_real_value_is_refused_as_a_certificate_error(expression, va
 TYRES = {
     "nonlinear": {"cornering_coefficient": 0.002, "aligning_coefficient": 1.0, "aligning_slip_limit": 0.17},
     "linear": {"cornering_slope": 0.014, "aligning_coefficient": -0.7},
-    "straight_tangent": {"cornering_stiffness": 2100.0, "aligning_stiffness": 1.5e5},
+    "stiffness": {"cornering_stiffness": 2100.0, "aligning_stiffness": 1.5e5},
 }
 
 
@@ -220,9 +221,9 @@ def study_at_random(base, rng, law, order, rake):
 def twin_of(study):
     gear, tyre, damper = study.gear, study.tyre, study.damper
     slopes = {
-        "nonlinear": lambda: {"C_F": tyre.cornering_coefficient, "C_M": tyre.aligning_coefficient},
+        "arctangent": lambda: {"C_F": tyre.cornering_coefficient, "C_M": tyre.aligning_coefficient},
         "linear": lambda: {"C_F": tyre.cornering_slope, "C_M": tyre.aligning_coefficient},
-        "straight_tangent": lambda: {"C_F": tyre.cornering_stiffness, "C_M": tyre.aligning_stiffness},
+        "stiffness": lambda: {"C_F": tyre.cornering_stiffness, "C_M": tyre.aligning_stiffness},
     }[tyre.law]()
     return parameters(
         I_z=gear.yaw_inertia,
@@ -238,7 +239,7 @@ def twin_of(study):
         a=tyre.half_contact_length,
         sigma=tyre.relaxation_length,
         kappa=tyre.tread_width_moment,
-        law=tyre.law,
+        law=TWIN_LAWS[tyre.law],
         **slopes,
     )
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import quad
 from tolerances import QUADRATURE, ROUNDING
 
+from damperopt.ports.section import Section
 from damperopt.strength.sections import area, area_for_modulus, fibre_distance, section_modulus, shape_numbers
-from damperopt.study.requirements import Section
 
 FAMILIES = {
     "solid_round": Section(family="solid_round"),

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from basic_twin import E_STEEL, LAYOUT, parameters, planar_coefficients, planar_torque, right_hand_side, state_matrix
+from components_of import VARIABLES
 from scipy.integrate import solve_ivp
 from tolerances import INTERPOLATED_DECAY, LINEAR_RESPONSE, ROUNDING, SAME_MOTION, SENSITIVITY
 
@@ -17,7 +18,6 @@ from damperopt.motion.measure import crossings, extrema
 from damperopt.motion.question import valid_part
 from damperopt.motion.simulate import Simulator, simulate
 from damperopt.motion.trajectory import Trajectory, motion_of
-from damperopt.study.variables import DESIGN_VARIABLES
 from damperopt.symbols import data_values, symbolic
 
 DESIGN = LAYOUT | {"c_lambda": 3.0e3, "k_lambda": 3.8e6, "I_arm": 3.4e-6}
@@ -52,7 +52,7 @@ def study(main_gear):
 
 
 def design_of(topology, **changes):
-    return {name: value for name, value in (DESIGN | changes).items() if name in DESIGN_VARIABLES[topology]}
+    return {name: value for name, value in (DESIGN | changes).items() if name in VARIABLES[topology]}
 
 
 def twin(topology, phi=RAKE, **design):

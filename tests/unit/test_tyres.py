@@ -6,33 +6,35 @@ import pytest
 from basic_twin import aligning_moment as twin_moment
 from basic_twin import parameters
 from basic_twin import side_force as twin_force
+from components_of import tyre_of
 from scipy.integrate import trapezoid
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, GRID_SEARCH, ROUNDING
 
 from damperopt.expressions.corners import Smooth
-from damperopt.study.study import LinearTyre, StraightTangentTyre, StringTyre
-from damperopt.tyres import string as tyres
-from damperopt.tyres.string import (
-    peak_aligning_moment,
-    peak_side_force,
-    side_force,
-    straight_tangent_stiffnesses,
-)
 
 LOAD = 150e3
 CONTACT = {"half_contact_length": 0.1, "relaxation_length": 0.3}
 
 
+def on_string(tyre, deflection):
+    """Slip angle of the string's leading point."""
+    return ca.atan(deflection / tyre.relaxation_length)
+
+
+def side_force(tyre, deflection, load):
+    return tyre.force(on_string(tyre, deflection), load, None)
+
+
 def aligning_moment(tyre, deflection, load):
     """The law with its corner at the slip limit."""
-    return tyres.aligning_moment(tyre, deflection, load, Smooth())
+    return tyre.moment(on_string(tyre, deflection), load, None, Smooth())
 
 
-STRING = StringTyre(
+STRING = tyre_of(
     law="nonlinear", cornering_coefficient=0.002, aligning_coefficient=1.0, aligning_slip_limit=np.deg2rad(10.0), **CONTACT
 )
-LINEAR = LinearTyre(law="linear", cornering_slope=20.0, aligning_coefficient=2.0, **CONTACT)
-STRAIGHT = StraightTangentTyre(law="straight_tangent", cornering_stiffness=4.0e5, aligning_stiffness=3.0e4, **CONTACT)
+LINEAR = tyre_of(law="linear", cornering_slope=20.0, aligning_coefficient=2.0, **CONTACT)
+STRAIGHT = tyre_of(law="stiffness", cornering_stiffness=4.0e5, aligning_stiffness=3.0e4, **CONTACT)
 TWINS = [
     (STRING, parameters()),
     (LINEAR, parameters(law="linear", C_F=20.0, C_M=2.0)),
@@ -111,20 +113,20 @@ def test_peaks_are_the_largest_values_of_the_nonlinear_law():
     """By search over a fine grid, which meets a flat maximum to second order in its spacing."""
     fine = 0.3 * np.tan(np.linspace(0, np.deg2rad(80.0), 100_001))
     force, moment = values(side_force, STRING, fine), values(aligning_moment, STRING, fine)
-    assert force.max() <= peak_side_force(STRING, LOAD) * (1 + ROUNDING)
-    assert force.max() == pytest.approx(peak_side_force(STRING, LOAD), rel=GRID_SEARCH)
-    assert moment.max() <= float(peak_aligning_moment(STRING, LOAD)) * (1 + ROUNDING)
-    assert moment.max() == pytest.approx(float(peak_aligning_moment(STRING, LOAD)), rel=GRID_SEARCH)
+    assert force.max() <= STRING.peaks(LOAD, None).side_force * (1 + ROUNDING)
+    assert force.max() == pytest.approx(STRING.peaks(LOAD, None).side_force, rel=GRID_SEARCH)
+    assert moment.max() <= STRING.peaks(LOAD, None).aligning_moment * (1 + ROUNDING)
+    assert moment.max() == pytest.approx(STRING.peaks(LOAD, None).aligning_moment, rel=GRID_SEARCH)
 
 
 def test_aligning_moment_peaks_at_half_the_slip_limit():
     (at_half,) = values(aligning_moment, STRING, 0.3 * np.tan(np.deg2rad(5.0)))
-    assert at_half == pytest.approx(float(peak_aligning_moment(STRING, LOAD)), rel=ROUNDING)
+    assert at_half == pytest.approx(STRING.peaks(LOAD, None).aligning_moment, rel=ROUNDING)
 
 
 def test_peak_aligning_moment_is_positive_for_either_sign_of_the_coefficient():
     reversed_tyre = STRING.model_copy(update={"aligning_coefficient": -1.0})
-    assert float(peak_aligning_moment(reversed_tyre, LOAD)) == float(peak_aligning_moment(STRING, LOAD)) > 0
+    assert reversed_tyre.peaks(LOAD, None).aligning_moment == STRING.peaks(LOAD, None).aligning_moment > 0
 
 
 @pytest.mark.parametrize("law", [side_force, aligning_moment])
@@ -136,7 +138,7 @@ def test_load_scales_all_laws_but_the_straight_tangent(law):
 
 def test_nonlinear_law_starts_as_the_linear_one():
     """Within the cube of a small slip angle; slope 7 C_F of one is the slope of the other."""
-    same = LinearTyre(law="linear", cornering_slope=7 * 0.002, aligning_coefficient=1.0, **CONTACT)
+    same = tyre_of(law="linear", cornering_slope=7 * 0.002, aligning_coefficient=1.0, **CONTACT)
     small = np.array([1e-5, -1e-5])
     for law in (side_force, aligning_moment):
         np.testing.assert_allclose(values(law, STRING, small), values(law, same, small), rtol=1e-6)
@@ -153,11 +155,11 @@ def test_straight_tangent_stiffnesses_from_the_carcass():
     parts = list(zip((line, ahead, behind), places, (inside, outside, outside), strict=True))
     force = c_c * sum(trapezoid(v, along) for v, _, along in parts)
     moment = -c_c * sum(trapezoid(v * x, along) for v, x, along in parts)
-    tyre = StraightTangentTyre(law="straight_tangent", carcass_stiffness=c_c, **CONTACT)
-    assert straight_tangent_stiffnesses(tyre) == pytest.approx((force, moment), rel=1e-6)
+    tyre = tyre_of(law="stiffness", carcass_stiffness=c_c, **CONTACT)
+    assert tuple(tyre.linear(LOAD, None))[:2] == pytest.approx((force, moment), rel=1e-6)
 
 
 @pytest.mark.parametrize("given", [{}, {"cornering_stiffness": 1e5}, {"aligning_stiffness": 1e4, "carcass_stiffness": 1e5}])
 def test_half_or_double_stiffness_of_the_straight_tangent_is_refused(given):
     with pytest.raises(ValueError, match="incomplete or double stiffness"):
-        StraightTangentTyre(law="straight_tangent", **CONTACT, **given)
+        tyre_of(law="stiffness", **CONTACT, **given)

@@ -111,9 +111,9 @@ FIGURES = (
 
 
 def thesis_gear() -> Study:
-    """The main gear of Table 0.1: the starter study's, with the tread-width moment that the starter leaves out."""
-    starter = files("damperopt").joinpath("starter.yaml").read_text(encoding="utf-8")
-    return loads(starter, "starter.yaml").replace(tyre__tread_width_moment=570.0)
+    """The main gear of Table 0.1, with its tread-width moment."""
+    text = files(__package__).joinpath("gear.yaml").read_text(encoding="utf-8")
+    return loads(text, "gear.yaml")
 
 
 def trace_figure(figure: ThesisFigure, study: Study, form: str) -> StabilityChart:

@@ -1,0 +1,123 @@
+"""What every damper is: a force along a stroke, states of its own, and the parts that carry it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from ..expressions.calculus import Expr
+from ..expressions.corners import Corners, Linear
+from ..ports.sizing import Force, LimitEvent, Sized
+from ..quantities.named import DesignVariable, Output, State
+from ..quantities.record import Record
+
+__all__ = ["Context", "Damper"]
+
+
+@dataclass(frozen=True)
+class Context:
+    """Where a damper works; expressions.
+
+    Attributes
+    ----------
+    load, speed : Expr
+        F_z [N], V [m/s].
+    temperature : Expr
+        [K]; None: at the reference of the damper's numbers.
+    current : Expr
+        [A]; 0: none.
+    outputs : mapping of str to Expr
+        Of the gear, for dampers that are driven by a measurement.
+    """
+
+    load: Expr = 0
+    speed: Expr = 0
+    temperature: Expr = None
+    current: Expr = 0
+    outputs: Mapping[str, Expr] = field(default_factory=dict)
+
+
+class Damper(Record):
+    """A shimmy damper along the stroke of a linkage, or about the yaw axis.
+
+    A damper is a file of its own with a class derived from this one, a literal `kind`, its `VARIABLES` and `STATES`, and the
+    method `force`. In a study its keys stand in the block `damper` beside those of the layout.
+    """
+
+    GROUP: ClassVar[str] = "damperopt.dampers"
+    VARIABLES: ClassVar[tuple[DesignVariable, ...]] = ()
+    """Numbers of the damper that the optimiser may choose."""
+    STATES: ClassVar[tuple[State, ...]] = ()
+    OUTPUTS: ClassVar[tuple[Output, ...]] = ()
+    SPEED_POWERS: ClassVar[tuple[int, ...]] = (0,)
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+    ROTARY: ClassVar[bool] = False
+    """Whether it acts about the yaw axis: strokes are then angles, and forces torques."""
+
+    kind: str
+
+    def force(
+        self,
+        design: Mapping[str, Expr],
+        states: Mapping[str, Expr],
+        stroke: Expr,
+        rate: Expr,
+        context: Context,
+        corners: Corners,
+    ) -> Force:
+        """Force along the stroke, and the rates of the damper's own states.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        states : mapping of str to Expr
+            Own states by name.
+        stroke, rate : Expr
+            From rest [m], and its rate [m/s]; rad and rad/s for a rotary damper.
+        context : Context
+        corners : Corners
+            Version of the nonlinear elements.
+        """
+        raise NotImplementedError  # every kind says it
+
+    def rate(
+        self,
+        design: Mapping[str, Expr],
+        states: Mapping[str, Expr],
+        stroke: Expr,
+        force: Expr,
+        context: Context,
+        corners: Corners,
+    ) -> Expr | None:
+        """Rate of the stroke at a force, where that has a closed form; None: it is made an unknown of the equations."""
+        return None
+
+    def series(self, design: Mapping[str, Expr]) -> Expr | None:
+        """Stiffness in series with the damper [N/m]; None where there is none."""
+        return None
+
+    def damping(self, design: Mapping[str, Expr]) -> Expr | None:
+        """Equivalent viscous damping for small motion [N s/m]; None where no one number says it."""
+        force = self.force(design, dict.fromkeys((s.name for s in self.STATES), 0.0), 0.0, 1.0, Context(), Linear())
+        return None if self.STATES else force.force
+
+    def peak_force(self, design: Mapping[str, Expr], rate: Expr) -> Expr:
+        """Force at the largest rate of the limit event [N], as the linear model has it."""
+        at_rest = dict.fromkeys((state.name for state in self.STATES), 0.0)
+        return self.force(design, at_rest, 0.0, rate, Context(), Linear()).force
+
+    def parts(self, event: LimitEvent, model: Any) -> Sized | None:
+        """Masses of the damper, sized by the limit event; None: it has no mass model and cannot be optimised.
+
+        Parameters
+        ----------
+        event : LimitEvent
+        model : MassModel
+        """
+        return None
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this model of a damper does not hold, in words."""
+        return ()

@@ -1,0 +1,101 @@
+"""What every gear is: how it moves its wheels, and how the ground and the damper move it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+from ..expressions.calculus import Expr, cos, sin, tan
+from ..expressions.corners import Corners
+from ..ports.motion import Attachment, Motion, Torque
+from ..ports.wheel import Contact, Wheel
+from ..quantities.named import Output, State
+from ..quantities.record import Angle, Coordinate, Inertia, Length, Record
+from .friction import Friction
+
+__all__ = ["Gear", "Names"]
+
+Names = Mapping[str, Expr]
+"""States by name."""
+
+
+class Gear(Record):
+    """Landing gear: the numbers that all gears have, and the questions that the model asks of each.
+
+    A gear is a file of its own with a class derived from this one, a literal `kind`, its `STATES`, and the methods `wheels`
+    and `rates`. The yaw of the piston about the strut axis is always there, as ``yaw_angle`` and ``yaw_rate``.
+    """
+
+    GROUP: ClassVar[str] = "damperopt.gears"
+    STATES: ClassVar[tuple[State, ...]] = ()
+    OUTPUTS: ClassVar[tuple[Output, ...]] = ()
+    SPEED_POWERS: ClassVar[tuple[int, ...]] = (-1, 0, 1)
+    """Powers of V in the linear model, beside those of the tyre."""
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0, 1)
+    """Powers of F_z; None: no polynomial in F_z, so that proofs go load by load."""
+    ORDER: ClassVar[int | None] = None
+    """What older studies call this kind: ``order: 3``."""
+    EXTENDS: ClassVar[tuple[str, str] | None] = None
+    """(kind, key): a study of that kind which gives the key means this kind."""
+    MIRRORS: ClassVar[bool] = True
+    """Whether a mirrored motion is a motion too."""
+
+    kind: str
+    yaw_inertia: Inertia
+    """I_z of all that yaws, about the strut axis [kg m^2]."""
+    caster_length: Coordinate
+    """e, offset of the axle from the strut axis, + behind it [m]; the mechanical trail with rake is `lever`."""
+    rake_angle: Angle = 0.0
+    """phi, between the strut axis and the vertical, + with the foot of the strut forward [rad]."""
+    wheel_radius: Length
+    """R_w, loaded [m]."""
+    friction: Friction | None = None
+    """Dry friction of the strut in yaw."""
+
+    def wheels(self, x: Names, speed: Expr, load: Expr) -> tuple[Wheel, ...]:
+        """The wheels on the ground.
+
+        Parameters
+        ----------
+        x : mapping of str to Expr
+            States by name.
+        speed, load : Expr
+            V [m/s], and F_z on the gear [N].
+        """
+        raise NotImplementedError  # every kind says it
+
+    def rates(self, x: Names, contacts: Sequence[Contact], damper: Torque, yaw_torque: Expr, corners: Corners) -> Motion:
+        """Equations of motion.
+
+        Parameters
+        ----------
+        x : mapping of str to Expr
+            States by name.
+        contacts : sequence of Contact
+            One for each wheel, in their order; each knows its wheel.
+        damper : Torque
+            Of linkage and damper; ``damper.torque`` acts on the piston.
+        yaw_torque : Expr
+            External, about the strut axis [N m].
+        corners : Corners
+            Version of the nonlinear elements.
+        """
+        raise NotImplementedError  # every kind says it
+
+    def lever(self) -> Expr:
+        """Effective caster with rake, e cos(phi) + (R_w + e sin(phi)) tan(phi) [m]; thesis (4-5)."""
+        e, phi, R_w = self.caster_length, self.rake_angle, self.wheel_radius
+        return e * cos(phi) + (R_w + e * sin(phi)) * tan(phi)
+
+    @property
+    def order(self) -> int:
+        """Of the linear gear with a string tyre of one state, as the field counts it."""
+        return len(self.STATES) + 1
+
+    def attachments(self, x: Names) -> dict[str, Attachment]:
+        """Where linkages act: ``damper`` between piston and strut."""
+        return {"damper": Attachment(x["yaw_angle"], x["yaw_rate"])}
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this model of a gear does not hold, in words."""
+        return ()

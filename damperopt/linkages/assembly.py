@@ -1,0 +1,127 @@
+"""Layout, damper and joints as the one block `damper` of a study, with the keys of all three side by side."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, ClassVar
+
+from ..dampers.base import Damper
+from ..errors import ConfigError
+from ..expressions.calculus import Expr
+from ..quantities.kinds import kinds, union_of
+from ..quantities.named import DesignVariable
+from ..quantities.record import refuse
+from .base import Layout
+from .joints import EndStop, Freeplay, Joints
+
+__all__ = ["Assembly", "assemblies", "assembly", "assembly_type", "dampers", "layouts"]
+
+
+def layouts() -> dict[str, type[Layout]]:
+    """Layouts by topology."""
+    return kinds("linkages", Layout, "topology")
+
+
+def dampers() -> dict[str, type[Damper]]:
+    """Dampers by kind."""
+    return kinds("dampers", Damper, "kind")
+
+
+class Assembly:
+    """What a layout with its damper answers as a whole; every `study.damper` is one."""
+
+    LAYOUT: ClassVar[type[Layout]]
+    KIND: ClassVar[type[Damper]]
+    VARIABLES: ClassVar[tuple[DesignVariable, ...]]
+    """Design variables of damper and layout, in the order of every table and file."""
+
+    def links(self, design: Mapping[str, Expr]) -> Expr | None:
+        """Stiffness of the torque links at the apex [N/m]; None: rigid."""
+        return getattr(self, "link_stiffness", None)
+
+    @property
+    def play(self) -> Freeplay | None:
+        """Of the apex joint."""
+        return getattr(self, "freeplay", None)
+
+    @property
+    def stop(self) -> EndStop | None:
+        """Of the damper's stroke."""
+        return getattr(self, "end_stop", None)
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What layout, damper and joints do not hold, in words."""
+        parts: list[Any] = [part for part in (self.LAYOUT, self.KIND, Joints) if isinstance(self, part)]
+        return tuple(words for part in parts if hasattr(part, "leaves_out") for words in part.leaves_out(self))
+
+
+@cache
+def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
+    """Record class of a layout with a damper.
+
+    Parameters
+    ----------
+    layout, damper : type
+
+    Returns
+    -------
+    type
+        With the fields of both, and those of the joints where there is a linkage.
+
+    Raises
+    ------
+    ConfigError
+        If a key belongs to both.
+    """
+    both = (set(layout.model_fields) & set(damper.model_fields)) - set(Joints.model_fields)
+    names = [v.name for v in (*damper.VARIABLES, *layout.VARIABLES)]
+    twice = sorted(both | {name for name in names if names.count(name) > 1})
+    if twice:
+        raise ConfigError(f"{layout.__name__} and {damper.__name__} both declare '{twice[0]}'; allowed: each key once")
+    bases = (Assembly, layout, damper) if layout.ROTARY else (Assembly, layout, damper, Joints)
+    facts = {
+        "LAYOUT": layout,
+        "KIND": damper,
+        "VARIABLES": (*damper.VARIABLES, *layout.VARIABLES),
+        "ROTARY": layout.ROTARY,
+        "__doc__": f"{layout.__name__} with {damper.__name__}.",
+        "__module__": __name__,
+        "__annotations__": dict.fromkeys(("LAYOUT", "KIND", "VARIABLES", "ROTARY"), ClassVar[Any]),
+    }
+    name = f"{layout.__name__}{damper.__name__}"
+    made = types.new_class(name, bases, {}, lambda namespace: namespace.update(facts))
+    globals().setdefault(name, made)  # where pickle looks for it
+    return made
+
+
+@cache
+def assemblies() -> dict[str, type[Any]]:
+    """Every layout with every damper that goes with it, by ``topology kind``."""
+    return {
+        f"{topology} {kind}": assembly(layout, damper)
+        for topology, layout in layouts().items()
+        for kind, damper in dampers().items()
+        if layout.ROTARY == damper.ROTARY
+    }
+
+
+def assembly_type() -> Any:
+    """Field type of a study's block `damper`, with its JSON Schema."""
+    return union_of(assemblies(), ("topology", "kind"), _prepared)
+
+
+def _prepared(block: dict[str, Any]) -> dict[str, Any]:
+    """With the kind of the damper written out."""
+    topology = block.get("topology")
+    layout = layouts().get(topology) if isinstance(topology, str) else None
+    if layout is None:
+        raise refuse("topology", "missing key" if topology is None else f"'{topology}' is unknown", ", ".join(layouts()))
+    kind = block.setdefault("kind", layout.DAMPER)
+    fitting = [name for name, damper in dampers().items() if damper.ROTARY == layout.ROTARY]
+    if kind not in fitting:
+        known = isinstance(kind, str) and kind in dampers()
+        what = f"'{kind}' does not go with topology '{topology}'" if known else f"'{kind}' is unknown"
+        raise refuse("kind", what, ", ".join(fitting))
+    return block

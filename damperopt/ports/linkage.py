@@ -1,0 +1,114 @@
+"""A damper linkage: lengths and levers as expressions of an angle, and the members that it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ..expressions.calculus import Expr
+
+__all__ = ["Linkage", "Member", "Point", "Position"]
+
+Point = tuple[Expr, Expr, Expr]
+"""x aft, y to the side, z up the strut [m]; origin on the strut axis at the height of the apex at rest."""
+
+
+@dataclass(frozen=True)
+class Position:
+    """The linkage at an angle; expressions.
+
+    Attributes
+    ----------
+    deflection, stroke : Expr
+        Deflection eps of the spring or arm tip, and stroke s of the damper from rest [m].
+    spring_lever, damper_lever : Expr
+        d eps/d psi and ds/d psi [m/rad].
+    """
+
+    deflection: Expr
+    spring_lever: Expr
+    stroke: Expr
+    damper_lever: Expr
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A damper layout; expressions in the design variables.
+
+    Attributes
+    ----------
+    stiffness : Expr
+        k_eps [N/m] along the deflection.
+    at : callable
+        Angle psi [rad] -> Position.
+    spring_lever, damper_lever : Expr
+        d eps/d psi and ds/d psi at psi = 0 [m/rad].
+    reach : Expr
+        Horizontal distance of the apex from the strut axis, L sin(gamma) [m].
+    arm_length : Expr or None
+        Length of the bending arm that enters its bending [m].
+    damper_length : Expr or None
+        Pin-to-pin length of the damper [m]; None where the layout does not limit it.
+    unknowns, rest : sequence of Expr
+        Algebraic unknowns of the closed loop (symbols), and their values at psi = 0; empty unless the loop is in space.
+    closure : callable
+        psi -> residuals, zero where the loop is closed.
+    as_printed : mapping of str to Expr
+        Design values that a printed formula puts in the place of the design's own, as seen by the damper.
+    """
+
+    stiffness: Expr
+    at: Callable[[Expr], Position]
+    spring_lever: Expr
+    damper_lever: Expr
+    reach: Expr
+    arm_length: Expr = None
+    damper_length: Expr = None
+    unknowns: Sequence[Expr] = ()
+    rest: Sequence[Expr] = ()
+    closure: Callable[[Expr], Sequence[Expr]] = lambda psi: ()
+    as_printed: Mapping[str, Expr] = field(default_factory=dict)
+
+    @property
+    def torsional_stiffness(self) -> Expr:
+        """k_psi [N m/rad] at psi = 0."""
+        return self.stiffness * self.spring_lever**2
+
+
+@dataclass(frozen=True)
+class Member:
+    """A straight member of a layout: drawn, weighed and checked from this one record.
+
+    Attributes
+    ----------
+    name : str
+        Such as ``lower torque link``.
+    part : str
+        Part of the mass table that it counts to; empty: it is not weighed here (a damper weighs itself).
+    kind : str
+        ``link``, ``arm``, ``support`` or ``damper``: how it is drawn.
+    start, end : Point
+        [m], at rest.
+    section : str
+        Key of the mass model's section, such as ``link_section``.
+    inertia : Expr or None
+        Second moment of area [m^4] of a bending arm, whose stress is checked; None: a cantilever of uniform stress, sized by
+        its load.
+    load : str
+        Of the limit event, at its end: ``apex_force``, ``damper_force`` or ``spring_force``.
+    length : Expr or None
+        Length that is weighed [m]; None: from start to end.
+    bending_length : Expr or None
+        Lever of the load at the root [m]; None: the length.
+    """
+
+    name: str
+    part: str
+    kind: str
+    start: Point
+    end: Point
+    section: str = ""
+    inertia: Expr = None
+    load: str = "apex_force"
+    length: Expr = None
+    bending_length: Expr = None

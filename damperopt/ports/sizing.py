@@ -1,0 +1,116 @@
+"""Loads that size the parts, and what a damper answers to them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..expressions.calculus import Expr
+
+__all__ = ["Force", "LimitEvent", "Peaks", "Size", "Sized"]
+
+
+@dataclass(frozen=True)
+class Force:
+    """Force of a damper along its stroke; expressions.
+
+    Attributes
+    ----------
+    force : Expr
+        Against the stroke where positive [N] (for a rotary damper a torque [N m]).
+    rates : mapping of str to Expr
+        Derivatives of the damper's own states, by name.
+    outputs : mapping of str to Expr
+        By declared name [SI].
+    """
+
+    force: Expr
+    rates: Mapping[str, Expr] = field(default_factory=dict)
+    outputs: Mapping[str, Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest side force [N] and aligning moment [N m] that a slip law can give at a load."""
+
+    side_force: Expr
+    aligning_moment: Expr
+
+
+@dataclass(frozen=True)
+class LimitEvent:
+    """Loads of the limit event; expressions.
+
+    Attributes
+    ----------
+    torque : Expr
+        Yaw torque T_lim [N m].
+    yaw, yaw_rate : Expr
+        Static yaw angle [rad] and peak yaw rate [rad/s].
+    stroke, damper_force : Expr
+        Peak damper stroke to one side [m] and peak damper force [N].
+    apex_force : Expr
+        Lateral force at the apex of the torque links [N].
+    arm_moment : Expr
+        Root bending moment of the bending arm [N m]; 0 without an arm.
+    spring_force : Expr
+        Force of the spring or arm tip [N].
+    spring_energy : Expr
+        Energy that the spring stores [J].
+    safety_factor : Expr
+        On yield strength under these loads.
+    """
+
+    torque: Expr
+    yaw: Expr
+    yaw_rate: Expr
+    stroke: Expr
+    damper_force: Expr
+    apex_force: Expr
+    arm_moment: Expr
+    spring_force: Expr
+    spring_energy: Expr
+    safety_factor: Expr = 1
+
+
+@dataclass(frozen=True)
+class Size:
+    """A size of a part that the optimiser chooses because several limits act on it: its mass grows with it.
+
+    Attributes
+    ----------
+    name, unit : str
+    symbol : Expr
+        Stands for it in masses and lengths.
+    least : mapping of str to (Expr, tuple of str)
+        Least value by the name of the limit, and the key paths that would relax it.
+    start, lower, upper : float
+        [unit]
+    """
+
+    name: str
+    unit: str
+    symbol: Expr
+    least: Mapping[str, tuple[Expr, tuple[str, ...]]]
+    start: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Sized:
+    """A damper sized by the limit event; expressions.
+
+    Attributes
+    ----------
+    masses : mapping of str to Expr
+        Part -> mass [kg], fittings included.
+    sizes : tuple of Size
+        Sizes to be chosen, that the masses hang on.
+    length : Expr or None
+        Pin-to-pin length that it needs [m].
+    """
+
+    masses: Mapping[str, Expr]
+    sizes: tuple[Size, ...] = ()
+    length: Expr = None

@@ -1,0 +1,70 @@
+"""A through-rod hydraulic cylinder: rod, bore and walls from force, stroke and pressure."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..expressions.calculus import Expr, sqrt
+from ..ports.sizing import LimitEvent
+from .materials import allowable_stress
+
+__all__ = ["bore", "cylinder_mass", "rod_diameters", "rod_length"]
+
+
+def rod_length(event: LimitEvent, model: Any) -> Expr:
+    """Length of cylinder and rod, two strokes and the dead length [m]."""
+    return 2 * event.stroke + model.dead_length
+
+
+def rod_diameters(event: LimitEvent, model: Any) -> dict[str, tuple[Expr, tuple[str, ...]]]:
+    """Least rod diameter [m] against yield, against Euler buckling (pinned, full length), and to be made at all.
+
+    Parameters
+    ----------
+    event : LimitEvent
+    model : MassModel
+
+    Returns
+    -------
+    dict
+        Limit -> (diameter [m], key paths that would relax it).
+    """
+    steel, F = model.damper_material, event.damper_force
+    allowable = allowable_stress(steel, event.safety_factor)
+    buckling = 64 * model.rod_buckling_factor * F * rod_length(event, model) ** 2
+    return {
+        "rod_yield": (sqrt(4 * F / (math.pi * allowable)), ("requirements.safety_factor",)),
+        "rod_buckling": ((buckling / (math.pi**3 * steel.youngs_modulus)) ** 0.25, ("mass.rod_buckling_factor",)),
+        "rod_minimum": (model.least_rod_diameter, ("mass.least_rod_diameter",)),
+    }
+
+
+def bore(event: LimitEvent, model: Any, rod_diameter: Expr) -> Expr:
+    """Bore of the cylinder [m]: an annulus F_max/p_max around the rod."""
+    return sqrt(4 * event.damper_force / (math.pi * model.working_pressure) + rod_diameter**2)
+
+
+def cylinder_mass(event: LimitEvent, model: Any, rod_diameter: Expr) -> Expr:
+    """Mass of the damper with its oil [kg].
+
+    Parameters
+    ----------
+    event : LimitEvent
+    model : MassModel
+    rod_diameter : Expr
+        [m]
+    """
+    # D bore, t wall of a thin cylinder p D/(2 sigma) plus an allowance for wear and threads, caps as clamped plates
+    # plus the same
+    steel = model.damper_material
+    sigma = allowable_stress(steel, event.safety_factor)
+    p, length = model.working_pressure, rod_length(event, model)
+    D = bore(event, model, rod_diameter)
+    t = model.wall_allowance + p * D / (2 * sigma)
+    cap = model.wall_allowance + D / 2 * sqrt(0.75 * p / sigma)
+    cylinder = math.pi * (D + t) * t * length
+    rod = math.pi / 4 * rod_diameter**2 * length
+    caps = 2 * math.pi / 4 * (D + 2 * t) ** 2 * cap
+    oil = model.oil_density * event.damper_force / p * length
+    return steel.density * (cylinder + rod + caps) * (1 + model.damper_fittings_fraction) + oil

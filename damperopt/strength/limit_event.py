@@ -1,0 +1,76 @@
+"""Loads of the limit event, which sizes the parts.
+
+The limit event is a yaw torque, not an imposed angle: T_lim gives the static yaw psi_lim = T_lim/k_psi and the peak
+rate psi_lim sqrt(k_psi/I_z). Or it is what simulated motions show: the same estimates, made from the yaw angle of a release or
+a kick, times factors from simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..expressions.calculus import Expr, absolute, sqrt
+from ..ports.linkage import Linkage
+from ..ports.sizing import LimitEvent
+
+__all__ = ["limit_event", "peaks_of"]
+
+
+def limit_event(
+    study: Any, linkage: Linkage, design: Mapping[str, Expr], load: Expr, factors: Sequence[Expr] = (1, 1, 1, 1, 1)
+) -> LimitEvent:
+    """Loads of the limit event at vertical load `load` [N].
+
+    Parameters
+    ----------
+    study : Study
+        Floats or symbols.
+    linkage : Linkage
+    design : mapping of str to Expr
+        Design variables by name [SI].
+    load : Expr
+        The largest vertical load of the envelope [N].
+    factors : sequence of Expr
+        (5,) on torque, yaw, stroke, damper force and spring force: simulated over estimated peaks, or 1.
+
+    Returns
+    -------
+    LimitEvent
+    """
+    torque = study.requirements.limit_torque
+    if study.requirements.limit_event == "simulated":
+        torque = linkage.torsional_stiffness * _disturbed_yaw(study, linkage)
+    elif torque is None:
+        peaks = study.tyre.peaks(load, study.tyre.pressure)
+        side_share = absolute(study.gear.lever()) * peaks.side_force
+        torque = study.requirements.limit_torque_factor * (peaks.aligning_moment + side_share)
+    yaw = torque / linkage.torsional_stiffness
+    yaw_rate = yaw * sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)
+    spring_force = factors[4] * torque / linkage.spring_lever
+    force = study.damper.peak_force(design, linkage.damper_lever * yaw_rate)
+    return LimitEvent(
+        torque=factors[0] * torque,
+        yaw=factors[1] * yaw,
+        yaw_rate=yaw_rate,
+        stroke=factors[2] * linkage.damper_lever * yaw,
+        damper_force=factors[3] * force,
+        apex_force=factors[0] * torque / linkage.reach,
+        arm_moment=0 if linkage.arm_length is None else spring_force * linkage.arm_length,
+        spring_force=spring_force,
+        spring_energy=factors[1] * factors[4] * torque * yaw / 2,
+        safety_factor=study.requirements.safety_factor,
+    )
+
+
+def peaks_of(event: LimitEvent) -> tuple[Expr, ...]:
+    """What a simulation can show instead, in the order of `motion.measure.PEAKS`."""
+    return event.torque, event.yaw, event.stroke, event.damper_force, event.spring_force
+
+
+def _disturbed_yaw(study: Any, linkage: Linkage) -> Expr:
+    """Yaw angle of the release, or to which the kick leads without any damping."""
+    decay = study.requirements.decay
+    if decay.release is not None:
+        return absolute(decay.release.yaw_angle)
+    return absolute(decay.kick.yaw_rate) / sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)

@@ -1,0 +1,116 @@
+"""The rooms of components that a study chooses from, and what their kinds declare."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from ..gears.base import Gear
+from ..linkages.assembly import assemblies, assembly_type, dampers, layouts
+from ..linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS
+from ..quantities.kinds import kinds, one_of, tags_of
+from ..quantities.named import DesignVariable
+from ..quantities.record import refuse
+from ..tyres.assembly import contact_lines, slip_laws, tyre_type
+from ..tyres.base import Tyre
+
+__all__ = ["DAMPER", "GEAR", "ORDERS", "TYRE", "design_variables", "gears", "optimisable", "rooms", "unit_of_name"]
+
+
+def gears() -> dict[str, type[Gear]]:
+    """Gears by kind."""
+    return kinds("gears", Gear, "kind")
+
+
+ORDERS = {kind.ORDER: name for name, kind in gears().items() if kind.ORDER is not None}
+"""What older studies call a kind of gear: ``order: 3``."""
+
+
+def _gear_block(block: dict[str, Any]) -> dict[str, Any]:
+    """``order: 5`` as the kind that it means, and a kind that a key of its own asks for."""
+    if "order" in block:
+        order = block.pop("order")
+        if isinstance(order, bool) or order not in ORDERS:
+            raise refuse("order", f"{order!r:.40} is no order", " or ".join(map(str, ORDERS)) + ", or kind")
+        if block.setdefault("kind", ORDERS[order]) != ORDERS[order] and not _extends(block["kind"], ORDERS[order]):
+            raise refuse("order", f"{order} contradicts kind '{block['kind']}'", "one of the two")
+    for name, kind in gears().items():
+        if kind.EXTENDS is not None and block.get("kind") == kind.EXTENDS[0] and block.get(kind.EXTENDS[1]) is not None:
+            return {**block, "kind": name}
+    return block
+
+
+def _extends(kind: str, other: str) -> bool:
+    known = gears().get(kind)
+    return known is not None and known.EXTENDS is not None and known.EXTENDS[0] == other
+
+
+GEAR: Any = one_of("gears", Gear, "kind", _gear_block)
+TYRE: Any = tyre_type()
+DAMPER: Any = assembly_type()
+
+
+@cache
+def rooms() -> dict[str, dict[str, type[Any]]]:
+    """Every kind of component by room and tag."""
+    return {
+        "gears": dict(gears()),
+        "slip laws": dict(slip_laws()),
+        "contact lines": dict(contact_lines()),
+        "linkages": dict(layouts()),
+        "dampers": dict(dampers()),
+    }
+
+
+def optimisable() -> tuple[str, ...]:
+    """Layouts that have design variables; the others can be analysed, and simulated."""
+    with_variables = (kind.LAYOUT for kind in assemblies().values() if kind.VARIABLES)
+    return tuple(dict.fromkeys(tags_of(layout, "topology")[0] for layout in with_variables))
+
+
+@cache
+def design_variables() -> dict[str, DesignVariable]:
+    """Design variables of all layouts and dampers by name; those of dampers first, as in every table."""
+    found: dict[str, DesignVariable] = {}
+    kinds_with: list[Any] = [*dampers().values(), *layouts().values()]
+    for kind in kinds_with:
+        for variable in kind.VARIABLES:
+            other = found.setdefault(variable.name, variable)
+            if other.unit != variable.unit:
+                raise ValueError(f"design variable '{variable.name}' is declared in {other.unit} and in {variable.unit}")
+    return found
+
+
+DERIVED = {
+    "rod_diameter": "m",
+    "torsional_stiffness": "N m/rad",
+    "torsional_damping": "N m s/rad",
+    "time": "s",
+    "yaw_acceleration": "rad/s^2",
+    "arm_stress": "Pa",
+    "unclosed": "m",
+    "mass": "kg",
+    "speed": "m/s",
+    "vertical_load": "N",
+}
+"""Units of what no component declares: what follows from a whole design or motion."""
+
+
+@cache
+def _declared() -> dict[str, str]:
+    units = dict(DERIVED) | {name: variable.unit for name, variable in design_variables().items()}
+    named: list[Any] = [*CHAIN_STATES, *OUTPUTS, *ROTARY_OUTPUTS, *Tyre.OUTPUTS]
+    for kind in (kind for room in rooms().values() for kind in room.values()):
+        named += [*getattr(kind, "STATES", ()), *getattr(kind, "OUTPUTS", ())]
+    return units | {quantity.name: quantity.unit for quantity in named}
+
+
+def unit_of_name(name: str) -> str:
+    """SI unit of a design variable, state or output by its name, as the component that has it declares it.
+
+    Raises
+    ------
+    KeyError
+        If none declares it.
+    """
+    return _declared()[name]

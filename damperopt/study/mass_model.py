@@ -1,0 +1,57 @@
+"""Numbers of the mass model, with their documented defaults."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import model_validator
+
+from ..ports.section import Section
+from ..quantities.record import Coordinate, Density, Distance, Fraction, Length, Record, Stress, refuse
+from ..quantities.units import Quantity
+from ..strength.materials import Material
+
+__all__ = ["MassModel"]
+
+_TUBE = Section(family="tube", thickness_ratio=0.1)
+
+
+class MassModel(Record):
+    """Numbers of the mass model; the defaults suit a main gear and are explained in the documentation."""
+
+    arm_section: Section = _TUBE
+    """Cross-section of the bending arm."""
+    link_section: Section = _TUBE
+    """Cross-section of the torque links."""
+    support_section: Section = _TUBE
+    """Cross-section of the support arm."""
+    cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
+    """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
+    link_fittings_fraction: Fraction = 0.2
+    """Lugs, pins and bushings, as a fraction of the mass of links, bending arm and support arm."""
+    damper_material: Material = Material.model_validate("AISI 4340")
+    """Cylinder, rod, caps and Belleville spring; a metal."""
+    working_pressure: Stress = 20.7e6
+    """Peak damper pressure at the limit event [Pa] (3000 psi)."""
+    dead_length: Length = 0.12
+    """Damper length that is not stroke: eyes, glands, piston [m]."""
+    wall_allowance: Distance = 2e-3
+    """Added to the wall and caps that pressure needs [m]."""
+    least_rod_diameter: Length = 0.012
+    """Thinnest rod that is made [m]."""
+    rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
+    """Euler load of the rod over the largest damper force, at least [1]."""
+    oil_density: Density = 860.0
+    """Of the damper fluid [kg/m^3]."""
+    damper_fittings_fraction: Fraction = 0.5
+    """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
+    spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3
+    """Stored energy of a Belleville stack over that of the same volume under uniform stress."""
+    lower_lug_height: Coordinate = 0.0
+    """Height of the lower torque-link hinge above the wheel axle [m]."""
+
+    @model_validator(mode="after")
+    def _damper_is_metal(self) -> Self:
+        if self.damper_material.yield_strength is None:
+            raise refuse("damper_material", f"'{self.damper_material.name}' has no yield strength", "a metal")
+        return self

@@ -1,0 +1,69 @@
+"""Slip law and contact line as the one block `tyre` of a study."""
+
+from __future__ import annotations
+
+import types
+import warnings
+from functools import cache
+from typing import Any, ClassVar
+
+from ..errors import ConfigError
+from ..quantities.kinds import kinds, one_of, union_of
+from ..quantities.record import refuse
+from .base import ContactLine, SlipLaw, Tyre
+
+__all__ = ["contact_lines", "slip_laws", "tyre_type"]
+
+
+def slip_laws() -> dict[str, type[SlipLaw]]:
+    """Slip laws by their tag."""
+    return kinds("tyres.laws", SlipLaw, "law")
+
+
+def contact_lines() -> dict[str, type[ContactLine]]:
+    """Contact lines by their tag."""
+    return kinds("tyres.contact", ContactLine, "contact")
+
+
+DEFAULT_CONTACT = "leading_point"
+
+
+@cache
+def tyre(law: type[SlipLaw]) -> type[Any]:
+    """Record class of a tyre with a slip law and any contact line."""
+    twice = sorted((set(law.model_fields) & set(Tyre.model_fields)) - {"law"})
+    if twice:
+        raise ConfigError(f"{law.__name__} declares '{twice[0]}', which every tyre has; allowed: other names")
+    lines: Any = one_of("tyres.contact", ContactLine, "contact", _contact_block, short=True)
+    facts = {
+        "LAW": law,
+        "__doc__": law.__doc__,
+        "__module__": __name__,
+        "__annotations__": {"LAW": ClassVar[Any], "contact": lines},
+        "contact": contact_lines()[DEFAULT_CONTACT](contact=DEFAULT_CONTACT),
+    }
+    name = f"{law.__name__}Tyre"
+    made = types.new_class(name, (law, Tyre), {}, lambda namespace: namespace.update(facts))
+    globals().setdefault(name, made)  # where pickle looks for it
+    return made
+
+
+def tyre_type() -> Any:
+    """Field type of a study's block `tyre`, with its JSON Schema."""
+    return union_of({name: tyre(law) for name, law in slip_laws().items()}, ("law",), _law_block)
+
+
+def _contact_block(block: dict[str, Any]) -> dict[str, Any]:
+    """``contact: {kind: name, ...}`` as a study has it, or with the tag under its own name."""
+    if "kind" in block and "contact" in block:
+        raise refuse("kind", "the contact line is named twice", "kind: one of " + ", ".join(contact_lines()))
+    return {"contact": block.pop("kind"), **block} if "kind" in block else block
+
+
+def _law_block(block: dict[str, Any]) -> dict[str, Any]:
+    if block.get("law") == "straight_tangent":
+        message = (
+            "tyre.law 'straight_tangent' is now 'stiffness', with any contact line; the old name goes with the next version"
+        )
+        warnings.warn(message, FutureWarning, stacklevel=2)
+    return block

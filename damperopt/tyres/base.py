@@ -1,0 +1,197 @@
+"""What a tyre is: a contact line and a slip law, and the numbers that both share.
+
+The contact line turns the motion of the wheel into two slip angles, alpha_F for the side force and alpha_M for the aligning
+moment; the slip law turns these into force and moment. Any contact line goes with any law. M_z > 0 restores a positive
+yaw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from ..expressions.calculus import Expr
+from ..expressions.corners import Corners
+from ..ports.sizing import Peaks
+from ..ports.wheel import Contact, Wheel
+from ..quantities.named import Output, State
+from ..quantities.record import Length, Pressure, Record
+from ..quantities.units import Quantity
+
+__all__ = ["ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A tyre at small slip; expressions, each possibly of load and pressure.
+
+    Attributes
+    ----------
+    cornering_stiffness : Expr
+        C_Fa, slope of the side force [N/rad].
+    aligning_stiffness : Expr
+        C_Ma, slope of the aligning moment [N m/rad].
+    relaxation_length, half_contact_length : Expr
+        sigma and a [m].
+    """
+
+    cornering_stiffness: Expr
+    aligning_stiffness: Expr
+    relaxation_length: Expr
+    half_contact_length: Expr
+
+    def __iter__(self) -> Any:
+        """C_Fa, C_Ma, sigma, a: for equations."""
+        yield from (self.cornering_stiffness, self.aligning_stiffness, self.relaxation_length, self.half_contact_length)
+
+
+@dataclass(frozen=True)
+class Slips:
+    """What a contact line makes of the motion of a wheel; expressions.
+
+    Attributes
+    ----------
+    rates : sequence of Expr
+        Derivatives of the states of the line, in their order.
+    force, moment : Expr
+        Slip angles alpha_F and alpha_M [rad].
+    """
+
+    rates: Sequence[Expr]
+    force: Expr
+    moment: Expr
+
+    def __iter__(self) -> Any:
+        """rates, alpha_F, alpha_M."""
+        yield from (self.rates, self.force, self.moment)
+
+
+class SlipLaw(Record):
+    """Static side force and aligning moment of a tyre over slip, load and pressure.
+
+    A law is a file of its own with a class derived from this one, a literal `law`, and the methods below. In a study its
+    keys stand in the block `tyre` beside those that all tyres share, so that `self` has these too.
+    """
+
+    GROUP: ClassVar[str] = "damperopt.slip_laws"
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0, 1)
+    """Powers of F_z in the linear model; None: no polynomial in F_z, so that proofs go load by load."""
+    ODD: ClassVar[bool] = True
+    """Whether force and moment change sign with the slip."""
+
+    law: str
+
+    def linear(self, load: Expr, pressure: Expr) -> Any:
+        """Small-slip data C_Fa [N/rad], C_Ma [N m/rad], sigma [m], a [m] at a load [N] and a pressure [Pa].
+
+        Returns
+        -------
+        Linear or tuple
+            In this order.
+        """
+        raise NotImplementedError  # every law says it
+
+    def force(self, alpha_F: Expr, load: Expr, pressure: Expr) -> Expr:
+        """Side force F_y [N] at a slip angle [rad]."""
+        raise NotImplementedError  # every law says it
+
+    def moment(self, alpha_M: Expr, load: Expr, pressure: Expr, corners: Corners) -> Expr:
+        """Aligning moment M_z [N m] at a slip angle [rad], positive where it restores."""
+        raise NotImplementedError  # every law says it
+
+    def peaks(self, load: Expr, pressure: Expr) -> Peaks | None:
+        """Largest force and moment at a load; None where the law has no peak, and a limit torque must be given."""
+        return None
+
+
+class ContactLine(Record):
+    """How the string of a tyre meets the ground.
+
+    A line is a file of its own with a class derived from this one, a literal `contact`, and the methods below.
+    """
+
+    GROUP: ClassVar[str] = "damperopt.contact_lines"
+    SPEED_POWERS: ClassVar[tuple[int, ...]] = (0, 1)
+    """Powers of V in the linear model."""
+    RATIONAL: ClassVar[bool] = True
+    """Whether its transfer functions are rational, so that states stand for all of it."""
+
+    contact: str
+
+    def states(self) -> tuple[State, ...]:
+        """States of the line, of one wheel."""
+        return ()
+
+    def slips(self, wheel: Wheel, linear: Linear, x: Sequence[Expr]) -> Any:
+        """Rates of the states and the slip angles.
+
+        Parameters
+        ----------
+        wheel : Wheel
+        linear : Linear
+            C_Fa, C_Ma, sigma, a of the slip law at this load.
+        x : sequence of Expr
+            States, in their order.
+
+        Returns
+        -------
+        Slips or tuple
+            rates, alpha_F, alpha_M.
+        """
+        raise NotImplementedError  # every line says it
+
+    def response(self, s: Expr, linear: Linear) -> tuple[Expr, Expr, Expr, Expr]:
+        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m]."""
+        raise NotImplementedError  # every line says it
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this line does not hold, in words."""
+        return ()
+
+
+class Tyre(Record):
+    """What contact line and slip law share; `study.tyre` is one with a slip law's keys and methods beside it."""
+
+    OUTPUTS: ClassVar[tuple[Output, ...]] = (
+        Output("slip_angle", "rad", "of the side force"),
+        Output("side_force", "N"),
+        Output("aligning_moment", "N m", "that of the tread width left out"),
+    )
+
+    half_contact_length: Length
+    """a, half the length of the footprint [m]."""
+    relaxation_length: Length
+    """sigma, decay length of the string's deflection before the footprint [m]."""
+    tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
+    """kappa, moment against the swivel rate of a footprint with a width, kappa theta'/V [N m^2/rad]."""
+    slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
+    """Slip angle up to which the law is trusted; a simulation stops there [rad]."""
+    pressure: Pressure | None = None
+    """Of inflation [Pa]; needed by laws that depend on it."""
+    contact: ContactLine
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """States of one wheel."""
+        return self.contact.states()
+
+    def on_ground(self, wheel: Wheel, states: Sequence[Expr], corners: Corners) -> Contact:
+        """What the ground does to a wheel.
+
+        Parameters
+        ----------
+        wheel : Wheel
+        states : sequence of Expr
+            Of this wheel, in the order of `states`.
+        corners : Corners
+            Version of the nonlinear elements.
+        """
+        law: Any = self
+        linear = Linear(*law.linear(wheel.load, self.pressure))
+        rates, alpha_F, alpha_M = self.contact.slips(wheel, linear, states)
+        F_y = law.force(alpha_F, wheel.load, self.pressure)
+        M_z = law.moment(alpha_M, wheel.load, self.pressure, corners)
+        M_kappa = self.tread_width_moment * wheel.swivel_rate / wheel.speed
+        outputs = {"slip_angle": alpha_F, "side_force": F_y, "aligning_moment": M_z}
+        return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, wheel=wheel)

@@ -7,10 +7,10 @@ from damperopt import optimise
 
 @pytest.mark.parametrize("topology", ["boeing", "arreaza"])
 def test_a_limit_that_nothing_comes_near_is_as_good_as_none(main_gear, topology):
-    """The multiplier of such a row is rounding; times a slack of 1e9 m it must not be taken for a missed condition."""
+    """The multiplier of such a row is rounding; times a slack of 10 km it must not be taken for a missed condition."""
     study = main_gear.replace(damper__topology=topology, solver__starts=2)
     near = optimise(study.replace(requirements__lug_distance={"min": 0.0, "max": 5.0}))
-    far = optimise(study.replace(requirements__lug_distance={"min": 0.0, "max": 1e9}))
+    far = optimise(study.replace(requirements__lug_distance={"min": 0.0, "max": 1e4}))
     assert near.status == far.status == "solved"
     assert far.mass.total == pytest.approx(near.mass.total, rel=1e-6)
 

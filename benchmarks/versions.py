@@ -86,7 +86,9 @@ def collect(optima: bool) -> dict[str, dict[str, list[float]]]:
             )
             shown = [] if "rotational" in study.damper.topology else sorted(motion.outputs)
             rows = [motion.time, *motion.states.values(), *(motion.outputs[key] for key in shown)]
-            mine["transient"] = np.concatenate([row[:: max(len(row) // 20, 1)] for row in rows]).tolist()
+            sizes = [np.abs(row).max() or 1.0 for row in rows]  # each quantity in units of its largest value
+            shown_rows = [row[:: max(len(row) // 20, 1)] / size for row, size in zip(rows, sizes, strict=True)]
+            mine["transient"] = np.concatenate(shown_rows).tolist()
         if design and study.requirements is not None:
             problem = _problem(study)
             mine["mass"] = [mass for _, mass in sorted(problem.parts(design).items())]
@@ -126,7 +128,8 @@ def compare(before: dict[str, dict[str, list[float]]], after: dict[str, dict[str
                 worst[kind] = (np.inf, f"{study}: {len(old)} numbers, now {None if new is None else len(new)}")
                 continue
             a, b = np.array(old), np.array(new)
-            scale = np.maximum(np.abs(a), 1e-9 * np.abs(a).max(initial=0.0) + 1e-300)
+            floor = 1.0 if kind == "transient" else 1e-9
+            scale = np.maximum(np.abs(a), floor * np.abs(a).max(initial=0.0) + 1e-300)
             difference = float((np.abs(a - b) / scale).max(initial=0.0))
             if difference >= worst.get(kind, (-1.0, ""))[0]:
                 worst[kind] = (difference, study)

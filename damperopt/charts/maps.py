@@ -13,13 +13,14 @@ does not converge, all roots are found by Weierstrass' iteration. Every value is
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
 
+from ..expressions.graph import walk
 from ..stability.hurwitz import characteristic_polynomial, lienard_chipart, shifted
 from .plane import Plane
 
@@ -236,27 +237,33 @@ def _compiled(source: str, name: str) -> Callable[..., None]:
     return numba.njit(scope[name], parallel=True, error_model="numpy", fastmath={"contract", "arcp"})
 
 
+class _Source:
+    """Visitor of a graph: a line of Python for each operation."""
+
+    def __init__(self, inputs: list[list[str]], prefix: str):
+        self._inputs, self._prefix = inputs, prefix
+        self.lines: list[str] = []
+
+    def constant(self, value: float) -> str:
+        return self._line(repr(float(value)))
+
+    def input(self, argument: int, position: int) -> str:
+        return self._line(self._inputs[argument][position])
+
+    def operation(self, code: int, operands: Sequence[str]) -> str:
+        return self._line((_BINARY if code in _BINARY else _UNARY)[code].format(*operands))
+
+    def _line(self, expression: str) -> str:
+        name = f"{self._prefix}{len(self.lines)}"
+        self.lines.append(f"{name} = {expression}")
+        return name
+
+
 def _lines(function: ca.Function, inputs: list[list[str]], prefix: str) -> tuple[list[str], list[str]]:
     """Straight-line Python of a CasADi function: its lines, and the names of its outputs."""
-    outputs = [""] * function.nnz_out(0)
-    names: dict[int, str] = {}
-    lines: list[str] = []
-    for k in range(function.n_instructions()):
-        operation, into, out = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
-        if operation == ca.OP_OUTPUT:
-            outputs[out[1]] = names[into[0]]
-            continue
-        if operation == ca.OP_INPUT:
-            expression = inputs[into[0]][into[1]]
-        elif operation == ca.OP_CONST:
-            expression = repr(float(function.instruction_constant(k)))
-        elif operation in _BINARY:
-            expression = _BINARY[operation].format(*(names[i] for i in into))
-        else:
-            expression = _UNARY[operation].format(names[into[0]])
-        names[out[0]] = f"{prefix}{k}"
-        lines.append(f"{prefix}{k} = {expression}")
-    return lines, outputs
+    source = _Source(inputs, prefix)
+    outputs = walk(function, source)
+    return source.lines, outputs
 
 
 def _sign_source(conditions: ca.Function) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -165,7 +165,9 @@ class ExactSimulator:
         states = {name: named.pop(name) for name in self.state_names}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
-        return Trajectory(speed, load, time, states, named, "stopped" if message else "completed", message, "exact")
+        status: Literal["completed", "stopped"] = "stopped" if message else "completed"
+        forcing = speed / self.study.gear.wheel_radius / (2 * math.pi) if disturbance.unbalance_moment else 0.0
+        return Trajectory(speed, load, time, states, named, status, message, "exact", forcing)
 
 
 class _Fast:

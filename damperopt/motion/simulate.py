@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -173,7 +173,9 @@ class Simulator:
         kept_states = {name: named.pop(name) for name in self._state_names}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
-        return Trajectory(speed, load, time, kept_states, named, "stopped" if message else "completed", message, self.engine)
+        status: Literal["completed", "stopped"] = "stopped" if message else "completed"
+        forcing = rate / (2 * math.pi) if unbalance else 0.0
+        return Trajectory(speed, load, time, kept_states, named, status, message, self.engine, forcing)
 
 
 class _Last:

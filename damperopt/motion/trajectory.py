@@ -7,18 +7,32 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from .measure import crossings, decay, extrema
 
 __all__ = ["TRAJECTORY_UNITS", "Motion", "Trajectory", "motion_of"]
 
-Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "growing", "diverging"]
+Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "forced response", "growing", "diverging"]
 
 STEADY = 2e-3
 """Relative change of the amplitude per cycle below which a motion counts as a limit cycle."""
 
 SETTLED = 1e-2
 """Fraction of the largest amplitude below which a decaying motion counts as settled."""
+
+BEAT = 0.02
+"""Relative rise and fall of the amplitude from which it counts as beating, and not as one that changes steadily."""
+
+NEAR = 1e-2
+"""Relative change of the amplitude per cycle below which a motion can be on its way into a cycle, and"""
+
+VANISHING = 0.25
+"""part of that change that may be left when it is extrapolated: 0 for an amplitude that tends to a limit, 1 for an exponential
+decay, 2/3 for one that goes with the reciprocal of time."""
+
+SAME_FREQUENCY = 0.02
+"""Relative; a motion at the frequency of what drives it."""
 
 TRAJECTORY_UNITS = {
     "time": "s",
@@ -70,6 +84,8 @@ class Trajectory:
         Why it stopped; empty if completed.
     engine : str
         Integrator.
+    forcing : float
+        Frequency [Hz] at which the gear is driven; 0: by nothing.
     """
 
     speed: float
@@ -80,6 +96,7 @@ class Trajectory:
     status: Literal["completed", "stopped"]
     message: str
     engine: str
+    forcing: float = 0.0
 
     def __getitem__(self, name: str) -> np.ndarray:
         """State or output by name."""
@@ -93,7 +110,8 @@ class Motion:
     Attributes
     ----------
     kind : str
-        ``settled``, ``decaying``, ``limit cycle``, ``growing`` or ``diverging`` (it left the validity of the model).
+        ``settled``, ``decaying``, ``limit cycle``, ``forced response`` (at the frequency that drives it),
+        ``growing`` or ``diverging`` (it left the validity of the model). Where the amplitude beats, its peaks count.
     cycles : float
         Cycles of the yaw angle that were completed, from its first extremum.
     decay_ratio : float or None
@@ -145,21 +163,61 @@ def motion_of(trajectory: Trajectory, cycles: int = 3) -> Motion:
         ends: Kind = "diverging" if trajectory.status == "stopped" else _kind_of_ends(end, float(np.abs(psi).max()))
         return Motion(ends, done, ratio, last, 0.0, 0.0, peaks)
     recent = slice(-max(6, min(20, amplitudes.size // 3)), None)
-    per_cycle = 2 * np.polyfit(np.arange(amplitudes[recent].size), np.log(amplitudes[recent] + 1e-300), 1)[0]
-    frequency = (turns[recent].size - 1) / 2 / (turns[recent][-1] - turns[recent][0])
-    amplitude, largest = float(amplitudes[-1]), float(amplitudes.max())
+    frequency = float((turns[recent].size - 1) / 2 / (turns[recent][-1] - turns[recent][0]))
+    amplitude = float(amplitudes[-1])
     kind: Kind
     if trajectory.status == "stopped":
         kind = "diverging"
     elif amplitude < ROUNDING:
         kind = "settled"
-    elif abs(per_cycle) < STEADY and np.ptp(amplitudes[recent]) < 0.02 * amplitude:
-        kind = "limit cycle"
-    elif per_cycle > 0:
-        kind = "growing"
     else:
-        kind = "settled" if amplitude < SETTLED * largest else "decaying"
-    return Motion(kind, done, ratio, amplitude, float(frequency), float(middles[-1]), peaks)
+        kind = _kind_of_amplitudes(amplitudes)
+        driven = abs(frequency - trajectory.forcing) < SAME_FREQUENCY * trajectory.forcing
+        kind = "forced response" if driven and kind != "growing" else kind
+    return Motion(kind, done, ratio, amplitude, frequency, float(middles[-1]), peaks)
+
+
+def _kind_of_amplitudes(amplitudes: np.ndarray) -> Kind:
+    """Kind of a motion from its amplitudes, one for each half cycle."""
+    index, heights = _envelope(amplitudes)
+    beating = index.size < amplitudes.size
+    count = max(2, (index.size + 1) // 2) if beating else max(6, min(20, index.size // 3))
+    index, heights = index[-count:], heights[-count:]
+    per_cycle = 2 * np.polyfit(index, np.log(heights + 1e-300), 1)[0]
+    steady = abs(per_cycle) < STEADY and np.ptp(heights) < 0.02 * heights[-1]
+    if steady or (not beating and _tends_to_a_limit(amplitudes)):
+        return "limit cycle"
+    if per_cycle > 0 and (beating or _rises_for_long(amplitudes)):
+        return "growing"
+    return "settled" if heights[-1] < SETTLED * amplitudes.max() else "decaying"
+
+
+def _envelope(amplitudes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers and values of the peaks of a beating amplitude; all amplitudes where it does not beat, or no longer does."""
+    peaks, _ = find_peaks(np.log(amplitudes + 1e-300), prominence=BEAT)
+    if peaks.size < 2 or amplitudes.size - 1 - peaks[-1] > 1.5 * (peaks[-1] - peaks[-2]):
+        return np.arange(amplitudes.size), amplitudes
+    return peaks, amplitudes[peaks]
+
+
+def _tends_to_a_limit(amplitudes: np.ndarray) -> bool:
+    """Whether the amplitude changes little, and ever less: extrapolated, its logarithmic change per cycle vanishes."""
+    part = np.log(amplitudes[-(amplitudes.size // 6 * 3) :] + 1e-300)
+    third = part.size // 3
+    if third < 4:
+        return False
+    early, middle, late = (2 * np.polyfit(np.arange(third), part[i * third :][:third], 1)[0] for i in range(3))
+    first, second = middle - early, late - middle
+    if abs(late) > NEAR or first * second <= 0 or abs(second) >= abs(first) or late * second >= 0:
+        return False
+    limit = late - second**2 / (second - first)
+    return bool(abs(limit) < VANISHING * abs(late))
+
+
+def _rises_for_long(amplitudes: np.ndarray) -> bool:
+    """Whether a rise is more than the first half of a beat: it has exceeded all before, or lasts half of the motion."""
+    lowest = int(amplitudes[: amplitudes.size - 1].argmin())
+    return bool(amplitudes[-1] >= amplitudes.max() or amplitudes.size - 1 - lowest >= amplitudes.size / 2)
 
 
 def _kind_of_ends(end: np.ndarray, largest: float) -> Kind:

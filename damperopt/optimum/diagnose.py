@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from ..results import Infeasibility, OperatingPoint, Relaxation
@@ -69,7 +71,7 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
     converged to it: it is enough. That no smaller one exists is not proved.
     """
     if solver.problem.study.required.decay is not None:
-        rest = NlpSolver(DesignProblem(solver.problem.study.replace(requirements__decay=None)))
+        rest = NlpSolver(DesignProblem(solver.problem.study.replace(**_without_decay(solver.problem))))
         found = diagnose(rest, starts)
         if found.feasible_design is None:
             return found
@@ -93,6 +95,16 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
             alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in alone.items()),
         ),
     )
+
+
+def _without_decay(problem: DesignProblem) -> dict[str, Any]:
+    """Changes that take the decay requirement away, and the simulated limit event with it: its torque stands in for it then."""
+    if problem.study.required.limit_event != "simulated":
+        return {"requirements__decay": None}
+    start = ca.SX([problem.study.start[name] for name in problem.design_names])
+    torque = float(problem.estimated_peaks(start, ca.SX(problem.data), ca.SX(problem.load_limit))[0])
+    required = problem.study.required.model_copy(update={"decay": None, "limit_event": "torque", "limit_torque": torque})
+    return {"requirements": required.model_dump()}
 
 
 def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagnosis:

@@ -1,7 +1,8 @@
 """Exact proof of stability over a continuous range of speeds, and of loads.
 
-With the design and the data as rationals, M(V, F) = V (A(V, F) + sigma 1) is a matrix of polynomials with rational
-coefficients, and its eigenvalues lie where those of A + sigma 1 do, left or right of the axis. Write its characteristic
+With the design and the data as rationals, M(V, F) = V^p (A(V, F) + sigma 1) is, for some p >= 0, a matrix of polynomials with
+rational coefficients (which powers of V and F occur, the components declare; that they keep it is checked), and its eigenvalues
+lie where those of A + sigma 1 do, left or right of the axis. Write its characteristic
 polynomial as q(mu) = E(mu^2) + mu O(mu^2). As V and F vary continuously, a root can reach the imaginary axis only where
 q(0) = 0 (through zero) or where E and O have a common root (a pair +-i w), that is where their resultant vanishes; up to
 a power of the leading coefficient that resultant is the last Hurwitz determinant. So if neither q(0) nor the resultant
@@ -14,9 +15,8 @@ rational arithmetic, with subdivision, for a rectangle of speeds and loads. No p
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
-from fractions import Fraction
-from math import comb, lcm
 from typing import Any, TypeAlias
 
 import flint
@@ -24,15 +24,24 @@ import numpy as np
 
 from ..errors import CertificateError
 from ..results import Certificate
+from ..stability.family import coefficients
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from ..symbols import data_values
-from .rationals import evaluate, rational
+from .rationals import decimal, evaluate, rational
+from .zeros import zero_in_rectangle, zeros_in_range
 
 __all__ = ["certify"]
 
 Q: TypeAlias = flint.fmpq
-MAX_BOXES = 20_000
+
+NO_RANGE = (
+    "not proved: the forces of this tyre are no polynomial in the load, and a proof over a range of loads needs one; "
+    "a list of loads can be proved load by load"
+)
+
+MARGINAL = 1e-9
+"""Relative to the largest root: an abscissa that is the margin but for the rounding of eigenvalues."""
 
 
 def certify(
@@ -43,12 +52,13 @@ def certify(
     Parameters
     ----------
     study : Study
+        Its numbers are taken as the shortest decimals that return their floats: as they were written.
     design : mapping
         Design variables by name [SI]; taken at their exact binary values.
     margin : float or None
-        Stability margin [1/s]; None: the study's own (0 if it has no requirements).
+        Stability margin [1/s], a decimal as well; None: the study's own (0 if it has no requirements).
     model : LinearModel or None
-        Of the study, if it is at hand.
+        That of the study, if it has been built; None: it is built.
 
     Returns
     -------
@@ -57,37 +67,46 @@ def certify(
     Raises
     ------
     CertificateError
-        If the model cannot be evaluated exactly. A design that is not stable is no error.
+        If the model cannot be evaluated exactly, or does not keep the powers of speed and load that its components declare. A
+        design that is not stable is no error.
     """
     if margin is None:
         margin = study.required.stability_margin if study.requirements else 0.0
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
-    family = _Family(study, design, margin, model or LinearModel(study))
+    model = LinearModel(study) if model is None else model
     method = "bernstein" if envelope.load_is_range else "sturm"
 
     def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
         return Certificate(point is None if proved is None else proved, margin, speeds, loads, method, point, reason, boxes)
 
+    if envelope.load_is_range and model.powers.load is None:
+        return outcome(None, NO_RANGE, proved=False)
+    family = _Family(study, model, design, margin)
+
     # one stable point for each separate proof
     for load in loads[:1] if envelope.load_is_range else loads:
-        if not family.stable_at(rational(speeds[0]), rational(load)):
+        if not family.stable_at(decimal(speeds[0]), decimal(load)):
             start = speeds[0], load
+            if family.marginal_throughout(load):
+                return outcome(
+                    start, f"marginal at every speed: a root lies on the line Re = {0 - margin:g} 1/s at each of them"
+                )
             return outcome(start, f"missed at {_place(start)}, the low end of the range")
 
     if envelope.load_is_range:
         boxes = 0
         for condition in family.conditions():
-            point, examined = _zero_in_rectangle(condition, speeds, loads)
+            point, examined = zero_in_rectangle(condition, speeds, loads)
             boxes += examined
-            if point is not None and family.stable_at(rational(point[0]), rational(point[1])):
+            if point is not None and family.stable_at(decimal(point[0]), decimal(point[1])):
                 return outcome(None, f"undecided near {_place(point)}, where the margin is kept", boxes, proved=False)
             if point is not None:
                 return outcome(point, f"missed or touched at {_place(point)}", boxes)
         return outcome(None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and loads", boxes)
 
     for load in loads:
-        zeros = [V for condition in family.conditions(rational(load)) for V in _zeros_in_range(condition, speeds)]
+        zeros = [V for condition in family.conditions(load) for V in zeros_in_range(condition, speeds)]
         if zeros:
             worst = family.worst_between(sorted(zeros), speeds, load), load
             meeting = ", ".join(f"{V:.6g}" for V in sorted(zeros))
@@ -102,36 +121,63 @@ def _place(point: tuple[float, float]) -> str:
 class _Family:
     """A(V, F) + sigma 1 of one design as exact functions of speed and load."""
 
-    def __init__(self, study: Study, design: Mapping[str, float], margin: float, model: LinearModel):
+    def __init__(self, study: Study, model: LinearModel, design: Mapping[str, float], margin: float):
         self._gear, self._margin, self._n = model.at(design), margin, len(model.state_names)
+        self._powers, self._envelope = model.powers, study.envelope
         values = [rational(design[name]) for name in model.design_names]
-        data = [rational(value) for value in data_values(study)]
+        data, shift = [decimal(value) for value in data_values(study)], decimal(margin)
 
         def matrix(V: Q, F: Q) -> flint.fmpq_mat:
             entries = evaluate(model.state_matrix, [values, [V], [F], data])
-            shift = rational(margin)
             return flint.fmpq_mat([[e + (shift if i == j else 0) for j, e in enumerate(row)] for i, row in enumerate(entries)])
 
         self.matrix = matrix
-        self._parts = self._split()
+        self._split: dict[float | None, dict[tuple[int, int], flint.fmpq_mat]] = {}
 
-    def _split(self) -> dict[tuple[int, int], flint.fmpq_mat]:
-        """Matrices of V^i F^j, i = -1, 0, 1 and j = 0, 1: all that a rolling tyre on a linear string makes of V and F."""
-        V = [Q(1), Q(2), Q(4)]
-        inverse = flint.fmpq_mat([[1 / v, Q(1), v] for v in V]).inv()
-        parts = {}
-        for j, samples in enumerate(self._load_samples(V)):
-            for i in range(3):
-                parts[i - 1, j] = sum((samples[k] * inverse[i, k] for k in range(1, 3)), samples[0] * inverse[i, 0])
-        V, F = Q(7, 3), Q(5, 2)
-        rebuilt = sum((part * V**i * F**j for (i, j), part in parts.items()), parts[0, 0] * Q(0))
-        if rebuilt != self.matrix(V, F):
-            raise CertificateError("the state matrix is no combination of V, 1, 1/V with 1, F_z: no certificate for this model")
+    def _parts(self, load: float) -> dict[tuple[int, int], flint.fmpq_mat]:
+        """Matrices of V^i F^j in the declared powers; at one load alone where it is no polynomial in F."""
+        key = None if self._powers.load is not None else load
+        if key not in self._split:
+            ends = [decimal(load)] if self._powers.load is None else [decimal(F) for F in self._envelope.loads]
+            self._split[key] = self._made(sorted(ends))
+        return self._split[key]
+
+    def _made(self, loads: list[Q]) -> dict[tuple[int, int], flint.fmpq_mat]:
+        low, high = decimal(self._envelope.speed.min), decimal(self._envelope.speed.max)
+        # sampled in the envelope, at powers of two, which keep the numbers short
+        V_0 = _power_of_two(math.sqrt(float(low) * float(high)))
+        speeds = [V_0 * Q(2) ** (k - len(self._powers.speed) // 2) for k in range(len(self._powers.speed))]
+        powers = self._powers.load
+        if powers is None:
+            F_powers: tuple[int, ...] = (0,)
+            samples_at = loads
+        else:
+            F_0 = _power_of_two(float(loads[-1]))
+            F_powers, samples_at = powers, [F_0 / Q(2) ** k for k in range(len(powers))]
+        by_speed, by_load = _inverse(speeds, self._powers.speed), _inverse(samples_at, F_powers)
+        at_loads = [coefficients([self.matrix(V, F) for V in speeds], by_speed) for F in samples_at]
+        parts = {
+            (i, j): part
+            for i, samples in zip(self._powers.speed, zip(*at_loads, strict=True), strict=True)
+            for j, part in zip(F_powers, coefficients(list(samples), by_load), strict=True)
+        }
+        for V, F in {(low, loads[0]), (high, loads[-1]), (V_0 * Q(7, 5), (loads[0] + loads[-1] * 3) / 4)}:
+            rebuilt = sum((part * (V**i * F**j) for (i, j), part in parts.items()), flint.fmpq_mat(self._n, self._n))
+            if rebuilt != self.matrix(V, F):
+                raise CertificateError(
+                    f"the state matrix is no combination of the powers {list(self._powers.speed)} of V and {list(F_powers)} of "
+                    "F_z that its components declare: no certificate for this model"
+                )
         return parts
 
-    def _load_samples(self, speeds: list[Q]) -> list[list[flint.fmpq_mat]]:
-        unloaded = [self.matrix(V, Q(0)) for V in speeds]
-        return [unloaded, [self.matrix(V, Q(1)) - without for V, without in zip(speeds, unloaded, strict=True)]]
+    def marginal_throughout(self, load: float) -> bool:
+        """Whether a root lies on the line at every speed (a condition vanishes identically) and none to its right."""
+        given = load if not self._envelope.load_is_range else None
+        if all(condition != 0 for condition in self.conditions(given)):
+            return False
+        speeds = np.geomspace(self._envelope.speed.min, self._envelope.speed.max, 32)
+        roots = np.linalg.eigvals(self._gear.matrices(speeds, load))
+        return bool((roots.real.max(axis=1) + self._margin <= MARGINAL * np.abs(roots).max(axis=1)).all())
 
     def stable_at(self, V: Q, F: Q) -> bool:
         """Whether every eigenvalue at one rational point lies left of the line, by Routh's array in exact arithmetic."""
@@ -145,27 +191,46 @@ class _Family:
             upper, lower = lower, [u - ratio * w for u, w in zip(upper[1:], padded, strict=True)]
         return upper[0] > 0
 
-    def conditions(self, load: Q | None = None) -> list[flint.fmpq_mpoly]:
+    def conditions(self, load: float | None = None) -> list[flint.fmpq_mpoly]:
         """Polynomials in V (and F, if no load is given) that vanish wherever a root meets the line."""
         ring = flint.fmpq_mpoly_ctx.get(("u", "V", "F"), "lex")
         u, V, F = ring.gens()
-        F = F if load is None else ring.constant(load)
-        n = self._n
-        powers = {-1: ring.constant(1), 0: V, 1: V * V}
-        M = [
-            [sum((powers[i] * F**j * part[r, c] for (i, j), part in self._parts.items()), ring.constant(0)) for c in range(n)]
-            for r in range(n)
-        ]
+        n, parts = self._n, self._parts(self._envelope.loads[0] if load is None else load)
+        # times powers of V and F, which are positive, so that none is negative
+        lowest = [min(0, *(power[axis] for power in parts)) for axis in (0, 1)]
+        if load is not None:
+            lowest[1] = 0
+            parts = self._at_load(parts, decimal(load))
+        products = [(V ** (i - lowest[0]) * F ** (j - lowest[1]), part) for (i, j), part in parts.items()]
+        M = [[sum((p * part[r, c] for p, part in products), ring.constant(0)) for c in range(n)] for r in range(n)]
         q = _characteristic(M, ring)
         even = sum((q[n - k] * u ** (k // 2) for k in range(0, n + 1, 2)), ring.constant(0))
         odd = sum((q[n - k] * u ** (k // 2) for k in range(1, n + 1, 2)), ring.constant(0))
         return [_without_factor(condition, V) for condition in (q[n], even.resultant(odd, "u"))]
+
+    def _at_load(self, parts: dict[tuple[int, int], flint.fmpq_mat], F: Q) -> dict[tuple[int, int], flint.fmpq_mat]:
+        """The parts at one load, which is then no variable."""
+        joined: dict[tuple[int, int], flint.fmpq_mat] = {}
+        for (i, j), part in parts.items():
+            joined[i, 0] = joined.get((i, 0), flint.fmpq_mat(self._n, self._n)) + part * F**j
+        return joined
 
     def worst_between(self, zeros: list[float], speeds: tuple[float, float], load: float) -> float:
         """Speed of the largest abscissa among the zeros and the middles between them."""
         ends = [speeds[0], *zeros, speeds[1]]
         candidates = np.array([*zeros, *((a + b) / 2 for a, b in itertools.pairwise(ends))])
         return float(candidates[self._gear.abscissa(candidates, load).argmax()])
+
+
+def _power_of_two(value: float) -> Q:
+    """The power of two next below a positive number."""
+    return Q(2) ** math.floor(math.log2(value))
+
+
+def _inverse(points: list[Q], powers: tuple[int, ...]) -> list[list[Q]]:
+    """Inverse of the matrix of powers at points, as rows."""
+    inverse = flint.fmpq_mat([[point**i for i in powers] for point in points]).inv()
+    return [[inverse[i, k] for k in range(len(points))] for i in range(len(points))]
 
 
 def _characteristic(M: list[list[Any]], ring: Any) -> list[Any]:
@@ -187,142 +252,3 @@ def _without_factor(polynomial: Any, V: Any) -> Any:
     while polynomial != 0 and all(monomial[1] > 0 for monomial in polynomial.monoms()):
         polynomial = polynomial // V
     return polynomial
-
-
-# one variable: Sturm
-
-
-def _zeros_in_range(condition: Any, speeds: tuple[float, float]) -> list[float]:
-    """Zeros of a polynomial in V within a closed range, counted exactly and then enclosed; [] is a proof of none."""
-    low, high = rational(speeds[0]), rational(speeds[1])
-    degree = condition.degrees()[1]
-    coefficients = [Q(0)] * (degree + 1)
-    for monomial, coefficient in condition.terms():
-        coefficients[monomial[1]] += coefficient
-    polynomial = flint.fmpq_poly(coefficients)
-    if polynomial == 0:
-        return [speeds[0]]
-    ends = [float(speed) for speed, end in zip(speeds, (low, high), strict=True) if polynomial(end) == 0]
-    return sorted({*ends, *_enclosed(_sturm_chain(polynomial), low, high)})
-
-
-def _sturm_chain(polynomial: flint.fmpq_poly) -> list[flint.fmpz_poly]:
-    """Sturm's chain; a member may be scaled by a positive number, so each is kept primitive with integer coefficients.
-
-    Of the square-free part: at a multiple zero all members of the polynomial's own chain vanish, and nothing is counted.
-    """
-    whole = polynomial.numer()
-    first = _primitive(whole // whole.gcd(whole.derivative())) if whole.degree() > 0 else whole
-    chain = [first, _primitive(first.derivative())]
-    while chain[-1].degree() > 0:
-        above, below = chain[-2:]
-        scale = abs(below.leading_coefficient()) ** (above.degree() - below.degree() + 1)
-        remainder = -((above * scale) % below)
-        if remainder == 0:
-            break
-        chain.append(_primitive(remainder))
-    return [p for p in chain if p != 0]
-
-
-def _primitive(polynomial: flint.fmpz_poly) -> flint.fmpz_poly:
-    return polynomial // polynomial.content() if polynomial != 0 else polynomial
-
-
-def _sign_changes(chain: list[flint.fmpz_poly], at: Q) -> int:
-    signs = [value > 0 for value in (p(at) for p in chain) if value != 0]
-    return sum(a != b for a, b in itertools.pairwise(signs))
-
-
-def _enclosed(chain: list[flint.fmpz_poly], low: Q, high: Q) -> list[float]:
-    """Distinct zeros in (low, high], each to about 1e-9 of the range's upper end."""
-    count = _sign_changes(chain, low) - _sign_changes(chain, high)
-    if count == 0:
-        return []
-    if (high - low) < high * Q(1, 10**9):
-        return [float(Fraction(int(high.p), int(high.q)))]
-    middle = (low + high) / 2
-    return _enclosed(chain, low, middle) + _enclosed(chain, middle, high)
-
-
-# two variables: Bernstein
-
-
-def _zero_in_rectangle(
-    condition: Any, speeds: tuple[float, float], loads: tuple[float, ...]
-) -> tuple[tuple[float, float] | None, int]:
-    """A point where a polynomial in V and F vanishes, changes sign or cannot be told from zero; None is a proof of none.
-
-    Bernstein coefficients enclose the polynomial on a box and equal it at the corners; the box is halved until all have
-    one sign. All numbers are integers (the scale of a box is positive and does not matter).
-    """
-    whole = _bernstein(condition, speeds, loads)
-    if whole[0, 0] < 0:
-        whole = -whole
-    unit = Fraction(0), Fraction(1)
-    stack = [(whole, unit, unit)]
-    examined = 0
-    while stack:
-        box, v, f = stack.pop()
-        examined += 1
-        if (box > 0).all():
-            continue
-        for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
-            if box[i, j] <= 0:
-                return (_inside(speeds, v[i]), _inside(loads, f[j])), examined
-        if examined > MAX_BOXES:
-            return (_inside(speeds, (v[0] + v[1]) / 2), _inside(loads, (f[0] + f[1]) / 2)), examined
-        # halve where the polynomial varies more: a ridge along one axis needs no cuts across it
-        along_v = _variation(box, 0) >= _variation(box, 1)
-        for half, interval in zip(_halves(box, 0 if along_v else 1), _split(v if along_v else f), strict=True):
-            stack.append((half, interval, f) if along_v else (half, v, interval))
-    return None, examined
-
-
-def _variation(box: np.ndarray, axis: int) -> int:
-    """Largest difference of neighbouring coefficients along an axis; 0 where there is one coefficient only."""
-    return max(map(abs, np.diff(box, axis=axis).ravel().tolist()), default=0)
-
-
-def _inside(ends: tuple[float, ...], fraction: Fraction) -> float:
-    return float(Fraction(ends[0]) + (Fraction(ends[-1]) - Fraction(ends[0])) * fraction)
-
-
-def _split(interval: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
-    middle = (interval[0] + interval[1]) / 2
-    return (interval[0], middle), (middle, interval[1])
-
-
-def _bernstein(condition: Any, speeds: tuple[float, float], loads: tuple[float, ...]) -> np.ndarray:
-    """Integer Bernstein coefficients on the rectangle, (degree in V + 1, degree in F + 1), up to a positive factor."""
-    _, m, n = condition.degrees()
-    power = np.full((m + 1, n + 1), Fraction(0), dtype=object)
-    for (_, i, j), coefficient in condition.terms():
-        power[i, j] = Fraction(int(coefficient.p), int(coefficient.q))
-    for axis, ends in enumerate((speeds, loads)):
-        lines = np.moveaxis(power, axis, 0).reshape(power.shape[axis], -1).T
-        converted = [_bernstein_1d(line, Fraction(ends[0]), Fraction(ends[-1])) for line in lines]
-        power = np.array(converted, dtype=object).reshape(-1, power.shape[axis])
-        power = power.T if axis == 0 else power
-    scale = lcm(*(c.denominator for c in power.ravel()))
-    return np.array([[int(c * scale) for c in row] for row in power], dtype=object)
-
-
-def _bernstein_1d(power: Any, low: Fraction, high: Fraction) -> list[Fraction]:
-    n = len(power) - 1
-    # p(low + (high - low) t) in powers of t, then b_k = sum_i C(k, i)/C(n, i) p_i
-    width = high - low
-    zero = Fraction(0)
-    moved = [width**i * sum((power[k] * comb(k, i) * low ** (k - i) for k in range(i, n + 1)), zero) for i in range(n + 1)]
-    return [sum((Fraction(comb(k, i), comb(n, i)) * moved[i] for i in range(k + 1)), zero) for k in range(n + 1)]
-
-
-def _halves(box: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Bernstein coefficients of both halves along an axis, times 2^degree (de Casteljau without division)."""
-    row = np.moveaxis(box, axis, 0)
-    degree = len(row) - 1
-    left, right = [row[0] * 2**degree], [row[-1] * 2**degree]
-    for step in range(1, degree + 1):
-        row = row[:-1] + row[1:]
-        left.append(row[0] * 2 ** (degree - step))
-        right.append(row[-1] * 2 ** (degree - step))
-    return np.moveaxis(np.array(left), 0, axis), np.moveaxis(np.array(right[::-1]), 0, axis)

@@ -7,13 +7,15 @@ that the state matrix that is certified is the state matrix that is simulated, w
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 
 import casadi as ca
 import flint
 
 from ..errors import CertificateError
+from ..expressions.graph import walk
 
-__all__ = ["evaluate", "rational"]
+__all__ = ["decimal", "evaluate", "rational"]
 
 IRRATIONAL_BITS = 80
 """A function with an irrational value (cosine of the rake, square root of a length) is taken at this precision: the
@@ -21,8 +23,27 @@ matrix certified differs from the ideal one by parts in 1e24, that of floating p
 
 
 def rational(value: float) -> flint.fmpq:
-    """The exact value of a float."""
+    """The exact value of a float: that of a design variable, which a computer has found.
+
+    Examples
+    --------
+    >>> rational(0.1)
+    3602879701896397/36028797018963968
+    """
     return flint.fmpq(*value.as_integer_ratio())
+
+
+def decimal(value: float) -> flint.fmpq:
+    """The shortest decimal that returns a float: that of a number of a study, which somebody has written.
+
+    In decimals 0.4 - 0.1 - 0.3 is zero, in floats it is not; whether a gear is marginal can hang on it.
+
+    Examples
+    --------
+    >>> decimal(0.1)
+    1/10
+    """
+    return flint.fmpq(*Fraction(repr(float(value))).as_integer_ratio())
 
 
 def _irrational(function: Callable[[flint.arb], flint.arb]) -> Callable[[flint.fmpq], flint.fmpq]:
@@ -72,6 +93,32 @@ _OPERATIONS: dict[int, Callable[..., flint.fmpq]] = {
 }
 
 
+class _Exact:
+    """Visitor of a graph: rational numbers."""
+
+    def __init__(self, arguments: Sequence[Sequence[flint.fmpq]]):
+        self._arguments = arguments
+
+    def constant(self, value: float) -> flint.fmpq:
+        try:
+            return rational(value)
+        except (ArithmeticError, ValueError) as error:  # infinity, NaN
+            raise CertificateError(f"the state matrix has no real value at these data: {error}") from error
+
+    def input(self, argument: int, position: int) -> flint.fmpq:
+        return self._arguments[argument][position]
+
+    def operation(self, code: int, operands: Sequence[flint.fmpq]) -> flint.fmpq:
+        if code not in _OPERATIONS:
+            raise CertificateError(f"operation {code} of the state matrix has no exact form")
+        try:
+            return _OPERATIONS[code](*operands)
+        except ZeroDivisionError as error:
+            raise CertificateError("the state matrix divides by zero at these data") from error
+        except (ArithmeticError, ValueError) as error:  # root of a negative number
+            raise CertificateError(f"the state matrix has no real value at these data: {error}") from error
+
+
 def evaluate(function: ca.Function, arguments: Sequence[Sequence[flint.fmpq]]) -> list[list[flint.fmpq]]:
     """Values of an SX function with one matrix output.
 
@@ -93,25 +140,5 @@ def evaluate(function: ca.Function, arguments: Sequence[Sequence[flint.fmpq]]) -
         If the graph holds an operation that has no exact form here, or divides by zero.
     """
     rows, columns = function.size_out(0)
-    output = [[flint.fmpq(0)] * columns for _ in range(rows)]
-    work: dict[int, flint.fmpq] = {}
-    for k in range(function.n_instructions()):
-        operation = function.instruction_id(k)
-        into, out_of = function.instruction_output(k), function.instruction_input(k)
-        try:
-            if operation == ca.OP_CONST:
-                work[into[0]] = rational(function.instruction_constant(k))
-            elif operation == ca.OP_INPUT:
-                work[into[0]] = arguments[out_of[0]][out_of[1]]
-            elif operation == ca.OP_OUTPUT:
-                column, row = divmod(into[1], rows)
-                output[row][column] = work[out_of[0]]
-            elif operation in _OPERATIONS:
-                work[into[0]] = _OPERATIONS[operation](*(work[i] for i in out_of))
-            else:
-                raise CertificateError(f"operation {operation} of the state matrix has no exact form")
-        except ZeroDivisionError as error:
-            raise CertificateError("the state matrix divides by zero at these data") from error
-        except (ArithmeticError, ValueError) as error:  # root of a negative number, infinity, NaN
-            raise CertificateError(f"the state matrix has no real value at these data: {error}") from error
-    return output
+    values = walk(function, _Exact(arguments))
+    return [[values[column * rows + row] for column in range(columns)] for row in range(rows)]

@@ -2,27 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 from ..errors import ConfigError
-from .hurwitz import characteristic_polynomial, hurwitz_determinant, shifted
+from .family import Line
 from .linear import LinearGear
 
-__all__ = ["CriticalSpeed", "critical_speeds", "crossing_loads", "crossing_speeds", "speed_polynomials"]
+__all__ = ["CriticalSpeed", "along_loads", "along_speeds", "critical_speeds", "marginal_throughout"]
 
-DEGREE = 2
-"""V times any coefficient of the characteristic polynomial is a polynomial of this degree in V, and a coefficient one of this
-degree in F_z: V enters the state matrix as V in the string row and as 1/V in the yaw row only, F_z in two rows."""
+ON_THE_LINE = 1e-6
+"""Relative: |Re + margin| of a root at a candidate that is polished; candidates without such a root are no crossings."""
+
+NEIGHBOURHOOD = 1e-2
+"""Relative change of speed over which a root that crosses moves by more than rounding."""
+
+ROUNDING = 1e-12
+"""Relative to the largest root: real parts below are rounding of eigenvalues."""
+
+TURNS = 1e-3
+"""|Re + margin| where a root touches the line over its values a `NEIGHBOURHOOD` to both sides: it goes with the square of the
+distance, while that of a root that only comes near at an end of the range hardly changes."""
+
+SAME = 1e-8
+"""Relative: two candidates of one crossing."""
 
 
 @dataclass(frozen=True)
 class CriticalSpeed:
-    """A speed at which a root crosses the imaginary axis (or the line Re = -margin).
+    """A speed at which a root crosses or touches the imaginary axis (or the line Re = -margin).
 
     Attributes
     ----------
@@ -36,6 +47,8 @@ class CriticalSpeed:
         True where the root moves to the right with rising speed.
     boundary : bool
         True where the gear as a whole changes between stable and unstable there.
+    touching : bool
+        True where the root touches the line and turns back.
     """
 
     speed: float
@@ -44,67 +57,23 @@ class CriticalSpeed:
     frequency: float
     destabilising: bool
     boundary: bool
+    touching: bool = False
 
 
-def speed_polynomials(gear: LinearGear, load: float, top_speed: float) -> list[Polynomial]:
-    """Characteristic polynomial as a function of speed.
-
-    Parameters
-    ----------
-    gear : LinearGear
-    load : float
-        Vertical load [N].
-    top_speed : float
-        Speed that scales the argument [m/s].
-
-    Returns
-    -------
-    list of Polynomial
-        v a_0, ..., v a_n as polynomials in v = V/top_speed (a common factor v > 0 moves no root).
-    """
-    v = _chebyshev_points()
-    a = characteristic_polynomial(gear.matrices(v * top_speed, load))
-    return _interpolated([a_i * v for a_i in a])
+def along_speeds(gear: LinearGear, load: float, low: float, high: float) -> Line:
+    """The gear at one load [N] as a polynomial in speed, from `low` to `high` [m/s]."""
+    return Line(lambda V: gear.matrices(V, load), gear.powers.speed, low, high, "speed")
 
 
-def _chebyshev_points() -> np.ndarray:
-    return 0.5 + 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-
-
-def _interpolated(samples: list[np.ndarray]) -> list[Polynomial]:
-    """Polynomials of degree `DEGREE` through samples at the Chebyshev points."""
-    points = _chebyshev_points()
-    to_coefficients = np.linalg.inv(np.vander(points, increasing=True))
-    return [Polynomial(to_coefficients @ np.broadcast_to(values, points.shape)) for values in samples]
-
-
-def crossing_speeds(polynomials: list[Polynomial], top_speed: float, level: float, low: float, high: float) -> np.ndarray:
-    """Speeds in [low, high] at which some root has the real part `level` [1/s], ascending [m/s]."""
-    return _crossings(polynomials, level, low / top_speed, high / top_speed) * top_speed
-
-
-def crossing_loads(gear: LinearGear, speed: float, level: float, low: float, high: float) -> np.ndarray:
-    """Loads in [low, high] at which some root has the real part `level` [1/s] at one speed, ascending [N]."""
-    f = _chebyshev_points()
-    a = characteristic_polynomial(gear.matrices(speed, f * high))
-    return _crossings(_interpolated(a), level, low / high, 1.0) * high
-
-
-def _crossings(polynomials: list[Polynomial], level: float, low: float, high: float) -> np.ndarray:
-    """Arguments in [low, high] at which a polynomial in s with these coefficients has a root of real part `level`."""
-    moved = shifted(polynomials, -level)
-    candidates = []
-    for condition in (moved[-1], hurwitz_determinant(moved, len(moved) - 2)):
-        largest = np.abs(condition.coef).max()
-        roots = condition.trim(largest * 1e-15).roots() if largest > 0 else np.array([])
-        # a pair of equal roots comes out as a complex pair of tiny imaginary part: keep it, callers look for themselves
-        candidates.append(roots.real[np.abs(roots.imag) < 1e-6 * (np.abs(roots.real) + 1e-9)])
-    found = np.concatenate(candidates)
-    return np.unique(found[(found >= low) & (found <= high)])
+def along_loads(gear: LinearGear, speed: float, low: float, high: float) -> Line | None:
+    """The gear at one speed [m/s] as a polynomial in the load, from `low` to `high` [N]; None where it is none."""
+    if gear.powers.load is None:
+        return None
+    return Line(lambda F: gear.matrices(speed, F), gear.powers.load, low, high, "load")
 
 
 def critical_speeds(gear: LinearGear, load: float, low: float, high: float, margin: float = 0.0) -> list[CriticalSpeed]:
-    """Speeds at which a root crosses Re = -margin, as roots of a_n and H_(n-1) in V, not as hits of a grid.
+    """Speeds at which a root crosses Re = -margin, as eigenvalues of a pencil in V, not as hits of a grid.
 
     Parameters
     ----------
@@ -119,42 +88,88 @@ def critical_speeds(gear: LinearGear, load: float, low: float, high: float, marg
     Returns
     -------
     list of CriticalSpeed
-        Ascending in speed.
+        Ascending in speed. A root that lies on the line at every speed, to rounding, crosses it nowhere: see
+        `marginal_throughout`.
 
     Raises
     ------
     ConfigError
-        If speeds or load are not positive, or the range is inverted.
+        If speeds or load are not positive, the range is inverted, or the model does not keep its powers of speed.
     """
     if not (0 < low <= high < np.inf and 0 < load < np.inf):
         raise ConfigError(f"found speeds {low:g} to {high:g} m/s, load {load:g} N; allowed: 0 < low <= high, load > 0")
-    polynomials = speed_polynomials(gear, load, high)
-    found = []
-    for rough in crossing_speeds(polynomials, high, -margin, low, high):
-        eigenvalues = np.linalg.eigvals(gear.matrices(rough, load)[0]) + margin
-        crossing = eigenvalues[np.abs(eigenvalues.real).argmin()]
+    found: list[CriticalSpeed] = []
+    for rough in along_speeds(gear, load, low, high).crossings(-margin):
+        for critical in _at(gear, load, float(rough), margin):
+            same = [c for c in found if abs(c.speed - critical.speed) <= SAME * c.speed and c.kind == critical.kind]
+            if not any(c.destabilising == critical.destabilising or c.touching or critical.touching for c in same):
+                found.append(critical)
+    return sorted((c for c in found if low * (1 - SAME) <= c.speed <= high * (1 + SAME)), key=lambda c: c.speed)
 
-        def real_part(V: float, near: complex = crossing) -> float:
-            values = np.linalg.eigvals(gear.matrices(V, load)[0]) + margin
-            return float(values[np.abs(values - near).argmin()].real)
 
-        speed = _polish(real_part, float(rough))
-        if abs(real_part(speed)) > 1e-6 * (1 + abs(crossing)):
-            continue  # H_(n-1) = 0 also where two real roots are +-r: nothing crosses
+def marginal_throughout(gear: LinearGear, load: float, low: float, high: float, margin: float = 0.0) -> bool:
+    """Whether the rightmost root lies on Re = -margin, to rounding, at every speed of a range: marginal at every speed.
+
+    Parameters
+    ----------
+    gear : LinearGear
+    load : float
+        Vertical load [N].
+    low, high : float
+        Speed range [m/s].
+    margin : float
+        Stability margin [1/s].
+
+    Returns
+    -------
+    bool
+        False for a single speed.
+    """
+    if low == high:
+        return False
+    roots = np.linalg.eigvals(gear.matrices(np.geomspace(low, high, 9), load))
+    return bool((np.abs(roots.real.max(axis=1) + margin) <= 1e3 * ROUNDING * np.abs(roots).max(axis=1)).all())
+
+
+def _at(gear: LinearGear, load: float, rough: float, margin: float) -> Iterator[CriticalSpeed]:
+    """Crossings at a candidate; none where no root of the gear is on the line, or one only by rounding."""
+
+    def roots(V: float) -> np.ndarray:
+        moved: np.ndarray = np.linalg.eigvals(gear.matrices(V, load)[0]) + margin
+        return moved
+
+    here = roots(rough)
+    largest = np.abs(here).max()
+    near = [s for s in here if s.imag >= 0 and abs(s.real) <= 1e-2 * (1 + abs(s))]
+    for crossing in sorted(near, key=lambda s: abs(s.real)):
+
+        def real_part(V: float, crossing: complex = crossing) -> float:
+            values = roots(V)
+            return float(values[np.abs(values - crossing).argmin()].real)
+
+        speed = _polish(real_part, rough)
+        at = abs(real_part(speed))
+        if at > ON_THE_LINE * (1 + abs(crossing)):
+            continue  # two real roots at equal distances, or another root than the one that crosses
         step = 1e-5 * speed
+        below, above = real_part(speed - step), real_part(speed + step)
+        around = [abs(real_part(speed * (1 + side * NEIGHBOURHOOD))) for side in (-1, 1)]
+        if max(around) <= ROUNDING * largest:
+            continue  # on the line whatever the speed
+        touching = (below < 0) == (above < 0)
+        if touching and at > TURNS * min(around):
+            continue
         before, after = gear.abscissa([speed - step, speed + step], load) + margin
-        pair = abs(crossing.imag) > 1e-6 * (1 + abs(crossing))
-        found.append(
-            CriticalSpeed(
-                speed=speed,
-                load=load,
-                kind="hopf" if pair else "divergence",
-                frequency=float(abs(crossing.imag) / (2 * np.pi)) if pair else 0.0,
-                destabilising=bool(real_part(speed + step) > real_part(speed - step)),
-                boundary=bool((before < 0) != (after < 0)),
-            )
+        pair = abs(crossing.imag) > ON_THE_LINE * (1 + abs(crossing))
+        yield CriticalSpeed(
+            speed=speed,
+            load=load,
+            kind="hopf" if pair else "divergence",
+            frequency=float(abs(crossing.imag) / (2 * np.pi)) if pair else 0.0,
+            destabilising=bool(above > below),
+            boundary=bool((before < 0) != (after < 0)),
+            touching=touching,
         )
-    return found
 
 
 def _polish(function: Callable[[float], float], rough: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
@@ -16,6 +16,7 @@ from ..expressions.dae import DAE
 from ..quantities.named import State
 from ..study.study import Study
 from ..symbols import data_values, symbolic
+from .family import Powers, powers_of
 
 __all__ = ["LinearGear", "LinearModel", "linear_gear", "linearise", "spectral_abscissa"]
 
@@ -50,10 +51,13 @@ class LinearGear:
         (speeds, loads), each (m,) or scalar [m/s], [N] -> (m, n, n) state matrices.
     states : tuple of State
         Declarations of the n states.
+    powers : Powers
+        Powers of speed and load in the matrices.
     """
 
     matrices: Callable[[Any, Any], np.ndarray]
     states: tuple[State, ...]
+    powers: Powers = field(default_factory=Powers)
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -82,6 +86,7 @@ class LinearModel:
         self.states, self.state_names = dae.states, dae.state_names
         self.design_names = dae.design_names
         self.state_matrix = linearise(dae)
+        self.powers = powers_of(study)
         self._data = ca.DM(data_values(study))
 
     def at(self, design: Mapping[str, float]) -> LinearGear:
@@ -100,7 +105,7 @@ class LinearModel:
             columns = self.state_matrix(ca.repmat(values, 1, V.size), V.reshape(1, -1), F_z.reshape(1, -1), self._data)
             return columns.full().reshape(n, V.size, n).transpose(1, 0, 2)
 
-        return LinearGear(matrices, self.states)
+        return LinearGear(matrices, self.states, self.powers)
 
 
 def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> LinearGear:

@@ -8,7 +8,7 @@ from scipy.optimize import minimize, minimize_scalar
 
 from ..results import OperatingPoint
 from ..study.study import Envelope
-from .critical import crossing_loads, crossing_speeds, speed_polynomials
+from .critical import along_loads, along_speeds
 from .linear import LinearGear
 
 __all__ = ["worst_points"]
@@ -39,8 +39,8 @@ def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, s
 
     Notes
     -----
-    At each load the maximum over speed is global: beyond the refined samples, the polynomials a_n(V) and H_(n-1)(V),
-    shifted to the level found, show whether any speed lies above it; if one does, it is refined in turn (level-set
+    At each load the maximum over speed is global: beyond the refined samples, the speeds at which a root crosses the level
+    found, eigenvalues of a pencil, show whether any speed lies above it; if one does, it is refined in turn (level-set
     method, as for the H-infinity norm). Over a load range that holds at both ends; between them the peaks of a grid are
     refined, which is no proof: `certify` is.
     """
@@ -54,7 +54,7 @@ def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> 
     """Peaks of the abscissa over the rectangle of speeds and loads.
 
     Refined peaks of a grid first; then lines of constant speed, along which the abscissa's crossings of the level found are
-    again zeros of polynomials, now in the load: a ridge that lies between the loads of the grid is found where it cuts one.
+    again eigenvalues of a pencil, now in the load: a ridge that lies between the loads of the grid is found where it cuts one.
     Last, the load of the best point is refined with the exact maximum over speed.
     """
     (low, high), (light, heavy) = (envelope.speed.min, envelope.speed.max), envelope.loads[:2]
@@ -72,7 +72,9 @@ def _worst_between_loads(gear: LinearGear, envelope: Envelope, samples: int) -> 
 
     for speed in (max(found, key=lambda p: p.abscissa).speed, *np.unique(np.clip(np.geomspace(low, high, LINES), low, high))):
         level = max(p.abscissa for p in found)
-        ends = np.concatenate([[light], crossing_loads(gear, speed, level + 1e-9 * (1 + abs(level)), light, heavy), [heavy]])
+        line = along_loads(gear, speed, light, heavy)
+        cuts = loads[1:-1] if line is None else line.crossings(level + 1e-9 * (1 + abs(level)))
+        ends = np.concatenate([[light], cuts, [heavy]])
         middles = (ends[1:] + ends[:-1]) / 2
         for i in np.flatnonzero(gear.abscissa(speed, middles) > level + 1e-9 * (1 + abs(level))):
             box = [(low, high), (ends[i], ends[i + 1])]
@@ -135,11 +137,11 @@ def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: i
     height = gear.abscissa(speeds, load)
     found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
 
-    polynomials = speed_polynomials(gear, load, high)
+    line = along_speeds(gear, load, low, high)
     for _ in range(20):
         best = max(p.abscissa for p in found)
         level = best + 1e-9 * (1 + abs(best))
-        ends = np.concatenate([[low], crossing_speeds(polynomials, high, level, low, high), [high]])
+        ends = np.concatenate([[low], line.crossings(level), [high]])
         middles = (ends[1:] + ends[:-1]) / 2
         above = [i for i, V in enumerate(middles) if gear.abscissa(V, load)[0] > level]
         if not above:

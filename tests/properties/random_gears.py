@@ -63,7 +63,7 @@ def random_gear(rng, base, order=None, spread=1.0, **changes):
     def sign():
         return float(rng.choice([1, 1, 1, -1]))
 
-    law = str(rng.choice(["nonlinear", "linear", "straight_tangent"], p=[0.5, 0.25, 0.25]))
+    law = str(rng.choice(["nonlinear", "linear", "stiffness"], p=[0.5, 0.25, 0.25]))
     tyre = {
         "law": law,
         "half_contact_length": near(0.1),
@@ -168,3 +168,11 @@ def refined_maximum_2d(gear, speed, load, count=40, rounds=30):
         box = np.clip(np.array([centre - reach, centre + reach]).T, bounds[:, :1], bounds[:, 1:])
         count = 9
     return top, V, F_z
+
+
+def ends(study):
+    return study.envelope.speed.min, study.envelope.speed.max
+
+
+def eigenvalues(gear, speed, load):
+    return np.linalg.eigvals(gear.matrices(speed, load)[0])

@@ -6,7 +6,8 @@ One motion of the main gear (fifth order, new design, planar): the yaw angle rel
 times. damperopt integrates the state and its derivatives to all five design variables; SciPy the state alone, with the gear
 written with NumPy's functions as usual, with those of math, and as CasADi's expression called without overhead. Errors are the
 largest of the yaw angle over its release, against DOP853 at 1e-13. Every method runs at several tolerances; its time at equal
-error is interpolated in the logarithms. Then how the cost grows with duration and speeds, and the whole solution of a study.
+error is interpolated in the logarithms. Then how the cost grows with duration and speeds, what a loop over designs costs, and
+the whole solution of a study.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from damperopt.dynamics import build
 from damperopt.expressions.corners import Smooth
 from damperopt.motion.decay import DecayAnalysis
 from damperopt.motion.integrators import Integrator, has_compiler
+from damperopt.motion.simulate import Simulator
 from damperopt.symbols import data_values, symbolic
 
 STUDY = "configs/main_gear.yaml"
@@ -184,6 +186,38 @@ def growth(study: damperopt.Study, repeats: int) -> None:
         print(f"| {speeds} | {1e3 * seconds:.1f} | {found[0].ratio:.7f} |")
 
 
+def loop_over_designs(study: damperopt.Study) -> None:
+    """Short motions of one simulator with another design each: what is not integration is the price of asking."""
+    release = {"release": {"yaw_angle": RELEASE}}
+    dampings = DESIGN["c_lambda"] * np.geomspace(0.5, 2, 100)
+    print("\n| engine | simulator and first motion [ms] | 0.1 s with another design [ms] | of which not integration [ms] |")
+    print("|---|---|---|---|")
+    for engine in ["erk"] * has_compiler() + ["cvodes", "idas"]:
+        begin = time.perf_counter()
+        run = Simulator(study, engine=engine)
+        run(SPEED, LOAD, release, 0.1, design=DESIGN)
+        first, inside, spent = time.perf_counter() - begin, 0.0, []
+        integrate = Integrator.__call__
+
+        def timed(*arguments, integrate=integrate, **options):
+            nonlocal inside
+            begin = time.perf_counter()
+            found = integrate(*arguments, **options)
+            inside += time.perf_counter() - begin
+            return found
+
+        Integrator.__call__ = timed
+        try:
+            for c in dampings:
+                begin, inside = time.perf_counter(), 0.0
+                run(SPEED, LOAD, release, 0.1, design=DESIGN | {"c_lambda": float(c)})
+                spent.append((time.perf_counter() - begin, inside))
+        finally:
+            Integrator.__call__ = integrate
+        total, integration = np.array(spent).T
+        print(f"| {engine} | {1e3 * first:.0f} | {1e3 * total.min():.2f} | {1e3 * (total - integration).min():.2f} |")
+
+
 def whole_solution(study: damperopt.Study) -> None:
     print("\n| study | engine | time [s] | mass [kg] |")
     print("|---|---|---|---|")
@@ -204,6 +238,7 @@ def main() -> None:
         print("No C compiler here: the compiled Runge-Kutta method is left out.")
     equal_error(study, repeats)
     growth(study, repeats)
+    loop_over_designs(study)
     whole_solution(study)
 
 

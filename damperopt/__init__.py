@@ -85,7 +85,7 @@ def __getattr__(name: str) -> Any:
     if name == "plots":
         message = "damperopt.plots is now damperopt.figures; the old name goes with the next version"
         warnings.warn(message, DeprecationWarning, stacklevel=2)
-        return import_module(".figures.style", __name__)
+        return import_module(".figures", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

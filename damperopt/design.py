@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from .errors import ConfigError
-from .motion.decay import decay_analysis
+from .motion.exact import ExactSimulator
 from .optimum.answer import (
     SAME_MASS,
     constraint_results,
@@ -22,8 +22,9 @@ from .optimum.answer import (
     start_result,
 )
 from .optimum.diagnose import diagnose
-from .optimum.exchange import EnvelopeSolution, best_local, held_again
-from .optimum.multistart import StartOutcome, run_starts, solver_for, starting_designs
+from .optimum.exchange import EnvelopeSolution
+from .optimum.local import best_local, held_again
+from .optimum.multistart import StartOutcome, run_starts, starting_designs
 from .optimum.problem import DesignProblem
 from .optimum.sensitivity import sensitivities
 from .optimum.solve import NlpSolver
@@ -46,6 +47,9 @@ __all__ = ["combinations", "optimise", "optimise_each", "rank"]
 
 KKT_TOLERANCE = 1e-5
 """Largest KKT residual that counts as optimal (kg per unit of a scaled variable, and scaled rows)."""
+
+DIAGNOSED = 4
+"""Starts from which the least relaxation is looked for where no design is found."""
 
 REFINEMENTS = 5
 """Times that a counterexample of the certificate (over a load range) or of the exact simulation goes back to the solver."""
@@ -90,10 +94,10 @@ def optimise(
     """
     combinations(study, [], [])  # refuses what cannot be optimised
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
+    solver = NlpSolver(DesignProblem(study))
     with executor(workers) as pool, _bar(study, progress is True) as shown:
-        outcomes = run_starts(study, pool, shown if isinstance(progress, bool) else progress)
-    solver = solver_for(study.model_dump_json())
-    result = _answer(study, solver, outcomes)
+        outcomes = run_starts(solver, pool, shown if isinstance(progress, bool) else progress)
+    result = _answer(solver, outcomes)
     provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
     return result.model_copy(update={"provenance": provenance, "config": study.model_dump(mode="json")})
 
@@ -198,8 +202,8 @@ def rank(results: Iterable[DesignResult]) -> list[DesignResult]:
     return sorted(results, key=lambda r: (r.status != "solved", r.mass.total if r.mass else float("inf")))
 
 
-def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
-    problem = solver.problem
+def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
+    problem, study = solver.problem, solver.problem.study
     starts = tuple(start_result(outcome.index, outcome.found) for outcome in outcomes)
     solved = [outcome.found for outcome in outcomes if outcome.found.solved]
     base = DesignResult(
@@ -214,7 +218,7 @@ def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> De
         local_optima=local_optima(solved),
     )
     if not solved:
-        diagnosis = diagnose(solver, starting_designs(problem)[:4])
+        diagnosis = diagnose(solver, starting_designs(problem)[:DIAGNOSED])
         if diagnosis.infeasibility:
             message = infeasible_message(diagnosis.infeasibility.shortfalls, diagnosis.infeasibility.alone_enough)
             return base.model_copy(
@@ -237,15 +241,15 @@ def _answer(study: Study, solver: NlpSolver, outcomes: list[StartOutcome]) -> De
 
 def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
     """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it."""
-    study = solver.problem.study
-    certificate = certify(study, best.solution.design)
+    study, model = solver.problem.study, solver.problem.model
+    certificate = certify(study, best.solution.design, model=model)
     for _ in range(REFINEMENTS):
         if certificate.counterexample is None:
             break
         again = held_again(solver, best, [certificate.counterexample])
         if not again.solved:
             break
-        best, certificate = again, certify(study, again.solution.design)
+        best, certificate = again, certify(study, again.solution.design, model=model)
     return best, certificate
 
 
@@ -256,9 +260,11 @@ def _decayed(
     study, missed = solver.problem.study, list[tuple[float, float]]()
     if study.required.decay is None:
         return best, certificate, None
+    simulator = ExactSimulator(study, model=solver.problem.model)
     for _ in range(REFINEMENTS):
-        check = check_decay(study, best.solution.design, [(p.speed, p.load) for p in best.decay])
-        check = replace(check, optimised=best.decay[0].ratio, engine=decay_analysis(study).engine)
+        points = [(p.speed, p.load) for p in best.decay]
+        check = check_decay(study, best.solution.design, points, simulator=simulator)
+        check = replace(check, optimised=best.decay[0].ratio, engine=solver.decay.engine)
         if check.passed or check.ratio > (1 + NEARLY) * check.limit:
             break
         missed.append((check.speed, check.load))
@@ -284,7 +290,7 @@ def _checked(
     """Result of the best local optimum, with proof and verification."""
     problem, solution, worst = solver.problem, best.solution, best.worst[0]
     study = problem.study
-    grid = check_grid(study, solution.design)
+    grid = check_grid(study, solution.design, model=problem.model)
     agreeing = sum(s.solution.objective <= solution.objective * (1 + SAME_MASS) for s in solved)
     failures = []
     if not certificate.proved:
@@ -299,7 +305,8 @@ def _checked(
             f"the exact simulation decays to {decay.ratio:.6g} of the first amplitude in {decay.cycles} cycles at "
             f"{decay.speed:.6g} m/s, {decay.load / 1e3:.6g} kN; required {decay.limit:.6g}"
         )
-    event = problem.limit_event(solution.design)
+    factors = solver.simulated_factors(solution.design)
+    event = problem.limit_event(solution.design, factors)
     if decay is not None and study.required.limit_event == "simulated":
         over = [name for name, peak in decay.peaks.items() if peak > (1 + PEAK_TOLERANCE) * event[name]]
         failures += [f"the exact simulation shows {decay.peaks[n]:.5g} for {n}, sized for {event[n]:.5g}" for n in over]
@@ -314,8 +321,9 @@ def _checked(
         kkt_residual=solution.kkt_residual,
         agreeing_starts=agreeing,
     )
-    mass = problem.mass(solution.design)
-    constraints = constraint_results(problem, best)
+    parts = problem.parts(solution.design, factors)
+    mass = float(sum(parts.values()))
+    constraints = constraint_results(problem, best, factors)
     weights = decided_by(constraints, mass)
     message = f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
     if weights:
@@ -326,9 +334,9 @@ def _checked(
             "status": "failed" if failures else "solved",
             "message": message,
             "design": solution.design,
-            "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design)},
+            "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design, factors)},
             "limit_event": event,
-            "mass": MassResult(total=mass, parts=problem.parts(solution.design)),
+            "mass": MassResult(total=mass, parts=parts),
             "stability": worst,
             "constraints": constraints,
             "decay": decay,

@@ -27,7 +27,7 @@ from .quantities.named import State
 from .strength.members import root_stress_of_force
 from .symbols import SymbolicStudy
 
-__all__ = ["build", "effective_caster"]
+__all__ = ["build"]
 
 SIDES = {1: ("",), 2: ("_left", "_right")}
 """Suffixes of the names of tyre states by the number of wheels."""
@@ -89,11 +89,6 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         data_names=symbols.names,
         outputs=outputs,
     )
-
-
-def effective_caster(gear: Any) -> Any:
-    """Effective caster with rake [m]; see `Gear.lever`."""
-    return gear.lever()
 
 
 def _of_wheel(states: Sequence[State], wheel: int, wheels: int) -> list[State]:

@@ -6,9 +6,10 @@ import json
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
 from .errors import ConfigError
 from .reading import MOST_RESULT_BYTES, printable, text_of
@@ -47,10 +48,18 @@ UNITS = {
 }
 """SI unit of each number of `DesignResult.design` and `DesignResult.derived`."""
 
+_FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
+"""What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""
+
+SUM_TOLERANCE = 1e-9
+"""Relative difference of a total from the sum of its parts that is rounding."""
+
 
 @dataclass(frozen=True)
 class OperatingPoint:
     """A speed [m/s] and a vertical load [N], with the spectral abscissa there [1/s]."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
 
     speed: float
     load: float
@@ -81,6 +90,8 @@ class Certificate:
     boxes : int
         Rectangles examined (``bernstein``).
     """
+
+    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
 
     proved: bool
     margin: float
@@ -116,6 +127,8 @@ class DecayCheck:
         Integrator of the optimiser, and whether a missing C compiler decided that.
     """
 
+    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
+
     passed: bool
     limit: float
     cycles: int
@@ -129,7 +142,12 @@ class DecayCheck:
 
 
 class _Record(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, **_FINITE)
+
+
+def _impossible(what: str, found: Any) -> PydanticCustomError:
+    """Error of a result that `optimise` cannot have written."""
+    return PydanticCustomError("impossible", "{what}: found {found}", {"what": what, "found": str(found)[:80]})
 
 
 class MassResult(_Record):
@@ -137,6 +155,15 @@ class MassResult(_Record):
 
     total: float
     parts: dict[str, float]
+
+    @model_validator(mode="after")
+    def _adds_up(self) -> Self:
+        added = sum(self.parts.values())
+        if not all(part >= 0 for part in self.parts.values()):
+            raise _impossible("a part of negative mass", min(self.parts.values()))
+        if abs(added - self.total) > SUM_TOLERANCE * self.total:
+            raise _impossible("a total mass that is not the sum of its parts", f"{self.total:.9g}, parts {added:.9g}")
+        return self
 
 
 class ConstraintResult(_Record):
@@ -270,6 +297,34 @@ class DesignResult(_Record):
     local_optima: tuple[LocalOptimum, ...] = ()
     provenance: Provenance | None = None
     config: dict[str, Any] = {}
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.status == "solved":
+            self._is_proved()
+        if self.status == "infeasible" and (self.mass is not None or self.infeasibility is None):
+            raise _impossible("status infeasible with a mass, or without what is missing", self.status)
+        least = min((*self.design.values(), *self.derived.values()), default=1.0)
+        if self.mass is not None and least <= 0:
+            raise _impossible("a design with a value that is not positive", least)
+        return self
+
+    def _is_proved(self) -> None:
+        """What a solved result holds."""
+        names = ("mass", "stability", "certificate", "verification", "design")
+        if missing := [name for name in names if not getattr(self, name)]:
+            raise _impossible("status solved without", ", ".join(missing))
+        proof, check, decay = self.certificate, self.verification, self.decay
+        assert proof is not None
+        assert check is not None
+        if not proof.proved or proof.counterexample is not None or proof.margin < self.stability_margin:
+            raise _impossible("status solved without a certificate that proves its margin", proof.reason)
+        decayed = decay is None or (decay.passed and decay.ratio <= decay.limit)
+        if not (check.passed and check.grid_passed and decayed):
+            raise _impossible("status solved with a check that has not passed", self.message)
+        for worst in (self.stability, check.worst):
+            if worst is not None and worst.abscissa > -self.stability_margin * (1 - SUM_TOLERANCE):
+                raise _impossible("status solved with a spectral abscissa beyond the margin", f"{worst.abscissa:.6g} 1/s")
 
     @property
     def exit_code(self) -> int:

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import ConfigError
+from ..stability.linear import LinearModel
 from ..study.study import Study
 from .explicit import boundary as joint_lines
 from .explicit import joint_of
-from .plane import Axis, Plane, quantity_name
+from .plane import OPERATING, Axis, Plane, Tally, quantity_name
 from .tracing import Polyline, trace
 
 __all__ = ["Curve", "Family", "StabilityChart", "chart"]
@@ -107,6 +108,8 @@ class StabilityChart:
     load: float
     tolerance: float
     cell: float
+    abscissa: float | None = None
+    """Spectral abscissa of the design itself [1/s]: where speed or load is varied the largest, else at its own values."""
 
     def stable(self, x: np.ndarray, y: np.ndarray, family: int = 0) -> np.ndarray:
         """Whether the margin is kept, read off the curves alone.
@@ -197,7 +200,7 @@ def chart(
     values = {**study.start, **(design or {})}
     speed = study.envelope.speed.max if speed is None else speed
     load = max(study.envelope.loads) if load is None else load
-    plane = plane_type(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin)
+    plane = plane_type(study, Axis.of(study, *x), Axis.of(study, *y), values, speed, load, margin, model=LinearModel(study))
     varied: Axis | None = None
     families: list[float | None] = [None] if vary is None else list(vary[1])
     if vary is not None:
@@ -211,14 +214,28 @@ def chart(
     made = []
     for value in families:
         fixed = {} if varied is None or value is None else {varied.name: float(value)}
-        here = replace(plane, fixed=fixed, evaluations=0)
+        here = replace(plane, fixed=fixed, tally=Tally())
         joint = joint_of(here)
         lines = None if joint is None else joint_lines(here, joint, tolerance)
         family = None if lines is None else _family(here, value, mark, lines, tolerance, explicit=True)
         if family is None or not _right_everywhere(replace(record, families=(family,)), here):
             family = _family(here, value, mark, trace(here.excess, cells, tolerance=tolerance), tolerance)
         made.append(family)
-    return replace(record, families=tuple(made))
+    return replace(record, families=tuple(made), abscissa=_of_design(plane, mark, varied, made))
+
+
+def _of_design(plane: Plane, mark: tuple[float, float] | None, varied: Axis | None, made: Sequence[Family]) -> float | None:
+    """Spectral abscissa of the design that is drawn in: a family with another value of a design variable is not that design."""
+    if mark is None:
+        return None
+    if varied is not None and varied.name in OPERATING:
+        return max(family.abscissa for family in made if family.abscissa is not None)
+    return _at_mark(plane, mark)
+
+
+def _at_mark(plane: Plane, mark: tuple[float, float]) -> float:
+    place = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
+    return float(plane.excess(*place)[0]) - plane.margin
 
 
 def _right_everywhere(record: StabilityChart, plane: Plane) -> bool:
@@ -244,10 +261,7 @@ def _family(
         points = np.column_stack([plane.x.at(u), plane.y.at(v)])
         at = _corners(line.points, hopf, frequency, tolerance) if line.corners is None else line.corners
         curves.append(Curve(points, hopf, frequency, line.closed, (points[at] + points[at + 1]) / 2))
-    abscissa = None
-    if mark is not None:
-        place = [np.array([(m - a.low) / (a.high - a.low)]) for m, a in zip(mark, (plane.x, plane.y), strict=True)]
-        abscissa = float(plane.excess(*place)[0]) - plane.margin
+    abscissa = None if mark is None else _at_mark(plane, mark)
     return Family(value, tuple(curves), corner, abscissa, plane.evaluations, explicit)
 
 

@@ -200,7 +200,7 @@ def _rightmost(plane: Plane, places: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Whether no eigenvalue lies right of the one at -margin + i w, or of that pair: (m,) for places (m, 2) and w (m,)."""
     if not len(places):
         return np.zeros(0, bool)
-    plane.evaluations += len(places)
+    plane.tally.add(len(places))
     roots = np.linalg.eigvals(plane.matrices(*places.T)).astype(complex)
     rows = np.arange(len(roots))
     roots[rows, np.abs(roots - (-plane.margin + 1j * w)[:, None]).argmin(axis=1)] = -np.inf

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -14,9 +15,11 @@ from ..study.components import unit_of_name
 from ..study.study import Study, unit_of
 from ..symbols import data_names, data_values
 
-__all__ = ["Axis", "Plane", "quantity_name", "unit_of_quantity"]
+__all__ = ["OPERATING", "Axis", "Plane", "Tally", "quantity_name", "unit_of_quantity"]
 
 OPERATING = {"speed": "m/s", "vertical_load": "N"}
+"""Quantities of the operating point, which no design can choose."""
+
 BATCH = 20_000
 """Matrices that are in memory at once."""
 
@@ -105,7 +108,18 @@ class Axis:
         return self.low + (self.high - self.low) * fraction
 
 
-@dataclass
+class Tally:
+    """Counts the matrices whose eigenvalues were computed; the planes that share it add to it."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def add(self, more: int) -> None:
+        """Count so many more."""
+        self.count += more
+
+
+@dataclass(frozen=True)
 class Plane:
     """Spectral abscissa over two quantities, each as a fraction 0 to 1 of its range.
 
@@ -121,11 +135,10 @@ class Plane:
         [1/s]
     fixed : mapping
         Other quantities that are not those of the study, by full name.
-
-    Attributes
-    ----------
-    evaluations : int
-        State matrices whose eigenvalues were computed.
+    model : LinearModel or None
+        Of the study, if it is at hand; built when first needed otherwise.
+    tally : Tally
+        Of the eigenvalues that are computed.
     """
 
     study: Study
@@ -136,15 +149,31 @@ class Plane:
     load: float
     margin: float = 0.0
     fixed: Mapping[str, float] = field(default_factory=dict)
-    evaluations: int = 0
+    model: LinearModel | None = field(default=None, compare=False, repr=False)
+    tally: Tally = field(default_factory=Tally, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        self._model = LinearModel(self.study)
-        self._data_names = data_names(self.study)
-        numbers = dict(zip(self._data_names, data_values(self.study), strict=True))
-        self._values = {**numbers, **self.design, "speed": self.speed, "vertical_load": self.load, **self.fixed}
         if self.x.name == self.y.name:
             raise ConfigError(f"{self.x.name}: found on both axes; allowed: two different quantities")
+
+    @property
+    def evaluations(self) -> int:
+        """State matrices whose eigenvalues were computed."""
+        return self.tally.count
+
+    @cached_property
+    def _model(self) -> LinearModel:
+        return LinearModel(self.study) if self.model is None else self.model
+
+    @cached_property
+    def _data_names(self) -> tuple[str, ...]:
+        return data_names(self.study)
+
+    @cached_property
+    def _values(self) -> dict[str, float]:
+        """Numbers of the study, of the design and of the operating point by name [SI]."""
+        numbers = dict(zip(self._data_names, data_values(self.study), strict=True))
+        return {**numbers, **self.design, "speed": self.speed, "vertical_load": self.load, **self.fixed}
 
     def matrices(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """State matrices (m, n, n) at fractions u, v (m,) of the ranges."""
@@ -170,7 +199,7 @@ class Plane:
     def excess(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Spectral abscissa plus margin [1/s]: negative where the margin is kept."""
         u, v = np.broadcast_arrays(u, v)
-        self.evaluations += u.size
+        self.tally.add(u.size)
         parts = [self.matrices(u.ravel()[i : i + BATCH], v.ravel()[i : i + BATCH]) for i in range(0, u.size, BATCH)]
         values = [self._abscissa(A) for A in parts]
         return (np.concatenate(values) if values else np.zeros(0)).reshape(u.shape) + self.margin

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from ..output.folder import run_folder, write_modes, write_run
+from ..output.folder import run_folder, write_run
 from ..output.gallery import draw_modes
+from ..output.tables import write_modes
 from ..proof.certify import certify
 from ..stability.critical import critical_speeds
 from ..stability.linear import linear_gear

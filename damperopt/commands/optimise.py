@@ -11,8 +11,9 @@ import typer
 from ..design import combinations, optimise_each, rank
 from ..errors import Interrupted
 from ..output import write_report
-from ..output.folder import run_folder, write_ranking, write_run
+from ..output.folder import run_folder, write_run
 from ..output.gallery import write_design
+from ..output.tables import write_ranking
 from ..results import DesignResult
 from ..strength.materials import MATERIALS
 from ..study import config
@@ -66,6 +67,7 @@ def optimise(
                 write_report(place)
             return
         write_ranking(place / "ranking.csv", ordered)
+        (place / "result.json").write_text(ordered[0].to_json(), encoding="utf-8")  # the best, for analyse --design
         for position, result in enumerate(ordered, 1):
             own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
             own.mkdir()

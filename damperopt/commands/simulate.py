@@ -12,7 +12,8 @@ from ..motion.exact import ExactSimulator
 from ..motion.integrators import ENGINES
 from ..motion.simulate import Simulator
 from ..motion.trajectory import motion_of
-from ..output.folder import run_folder, write_motion, write_run, write_trajectory
+from ..output.folder import run_folder, write_run
+from ..output.tables import write_motion, write_trajectory
 from ..quantities.record import Force, Speed, Time
 from . import summary
 from .arguments import disturbance_of, quantity
@@ -58,11 +59,11 @@ def simulate(
     found = motion_of(motion, required.cycles if required else 3)
 
     def write(place: Path) -> None:
-        from ..figures import style as plots  # matplotlib takes longer to import than a motion takes to find
+        from .. import figures  # matplotlib takes longer to import than a motion takes to find
 
         write_trajectory(place / "trajectory.csv", motion)
         write_motion(place / "motion.json", motion, found, disturbance, values or study.start)
-        plots.save(plots.trajectory(motion, found), place, "trajectory")
+        figures.save_each({"trajectory": lambda: figures.trajectory(motion, found)}, place)
 
     write_run(folder, write)
     summary.show_motion(out, motion, found, required.cycles if required else 3)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..linkages.assembly import layouts
 from ..linkages.base import Layout
-from .style import styled
+from .style import plain, styled
 
 __all__ = ["linkage"]
 
@@ -38,10 +38,12 @@ def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
     if isinstance(layout, str):
         layout = layouts()[layout].model_construct(topology=layout)
     parts = layout.members(design)
+    if not parts:
+        raise ValueError(f"layout '{layout.topology}' has no members to draw")
     points = MM * np.array([point for part in parts for point in (part.start, part.end)])
     low, high = points.min(axis=0), points.max(axis=0)
     room = 0.15 * (high - low).max()
-    heights = [high[2] - low[2] + 2 * room, max(high[1] - low[1], 0.2 * (high[2] - low[2])) + 2 * room]
+    span = max(high[1] - low[1], high[2] - low[2]) + 2 * room  # of both views, so that their scale is one
     with styled():
         figure, axes = plt.subplots(1, 2, figsize=(9, 4.8), width_ratios=[1, 1])
         for axis, across, view in ((axes[0], 2, "Side"), (axes[1], 1, "Top")):
@@ -52,12 +54,11 @@ def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
                 axis.plot([a[0], b[0]], [a[across], b[across]], "o", ms=4, mfc="white", mec=COLOURS[part.kind], zorder=9)
             axis.axvline(0, color="#888888", lw=1, ls="-.") if across == 2 else axis.plot(0, 0, "+", ms=14, color="#888888")
             middle = (low[across] + high[across]) / 2
-            span = heights[0 if across == 2 else 1]
             axis.set(xlabel="x, aft of the strut axis [mm]", ylabel=f"{'z, up' if across == 2 else 'y, to the side'} [mm]")
             axis.set(ylim=(middle - span / 2, middle + span / 2), xlim=(low[0] - room, high[0] + room), title=view)
             axis.set_aspect("equal", adjustable="box")
         shown = {part.name: COLOURS[part.kind] for part in parts}
         handles = [plt.Line2D([], [], color=colour, lw=4) for colour in shown.values()]
         handles.append(plt.Line2D([], [], color="#888888", lw=1, ls="-."))
-        figure.legend(handles, [*shown, "strut axis"], loc="outside lower center", ncols=5, frameon=False)
+        figure.legend(handles, [*map(plain, shown), "strut axis"], loc="outside lower center", ncols=5, frameon=False)
         return figure

@@ -25,6 +25,14 @@ def friction_torque(friction: Friction | None, rate: Expr, corners: Corners) -> 
     """Torque [N m] against the yaw rate [rad/s]; 0 without friction.
 
     An exact simulation lets it stick: it knows the corner by its name ``friction``.
+
+    Parameters
+    ----------
+    friction : Friction or None
+    rate : Expr
+        Yaw rate [rad/s].
+    corners : Corners
+        Version of the nonlinear elements.
     """
     if friction is None:
         return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -18,10 +18,10 @@ from ..stability.linear import LinearModel
 from ..study.study import Study
 from ..symbols import data_values, symbolic
 from .integrators import Integrator, best_engine
-from .measure import PEAKS, Decay, decay, latest_count, loads_of
+from .measure import PEAKS, Decay, decay, fastest_rate, latest_count, loads_of
 from .tangent import TangentMotion, output_functions, weights_at_peak
 
-__all__ = ["DecayAnalysis", "DecayPoint", "decay_analysis"]
+__all__ = ["DecayAnalysis", "DecayPoint"]
 
 PER_CYCLE = 64
 """Output points in a cycle of the fastest mode: the cubic between them is good to 2e-7 of the amplitude."""
@@ -32,6 +32,9 @@ STRETCH_CYCLES = 4
 
 MAX_STRETCHES = 80
 """Calls after which a motion that has not completed its cycles is judged as it is: its yaw creeps."""
+
+CREPT = 0.9
+"""Part of a motion after which its decay is judged where it has not completed its cycles."""
 
 SETTLED = 1e-2
 """Part of the required ratio below which nothing more can matter."""
@@ -64,18 +67,22 @@ class DecayPoint:
 
 
 class DecayAnalysis:
-    """Decay of a study's gear, for any design.
+    """Decay of a study's gear, for any design; its integrators are built with the first motion, and stay.
+
+    The points of the last design are remembered: the search for the worst and that for peaks look at the same speeds.
 
     Parameters
     ----------
     study : Study
         With a decay requirement.
+    model : LinearModel or None
+        Of the study, if it is at hand.
     """
 
-    def __init__(self, study: Study):
+    def __init__(self, study: Study, model: LinearModel | None = None):
         assert study.required.decay is not None
         self.study, self.requirement = study, study.required.decay
-        self.model = LinearModel(study)
+        self.model = LinearModel(study) if model is None else model
         self._dae: DAE = build(symbolic(study), Smooth())
         self._data = np.array(data_values(study))
         self._design: tuple[float, ...] = ()
@@ -133,7 +140,7 @@ class DecayAnalysis:
         if data is not None:
             return self._simulated(design, speed, load, gradient, data)
         of_design = tuple(design[name] for name in self._dae.design_names)
-        if of_design != self._design:  # the search for the worst and for peaks look at the same speeds
+        if of_design != self._design:
             self._design, self._known = of_design, {}
         key = (float(speed), float(load), gradient)
         if key not in self._known:
@@ -145,13 +152,13 @@ class DecayAnalysis:
     ) -> DecayPoint:
         values = [design[name] for name in self._dae.design_names]
         A = self.model.state_matrix(ca.DM(values), speed, load, data).full()
-        latest = latest_count(A, self.requirement.cycles)
+        latest = latest_count(A, self.requirement.cycles, self._dae.state_names)
         motion, answer = self._followed(values, speed, load, A, latest, gradient, data)
         peaks, peak_slopes = self._peaks_of(motion, values, speed, load, gradient, data)
         if answer is None:
-            grown = np.abs(motion.x[0, -1]) > np.abs(motion.x[0, 0])
+            yaw = np.abs(motion.state("yaw_angle"))
             nothing = np.zeros(len(values) if gradient else 0)
-            return DecayPoint(speed, load, DIVERGED if grown else 1.0, nothing, motion.time[-1], peaks, peak_slopes)
+            return DecayPoint(speed, load, DIVERGED if yaw[-1] > yaw[0] else 1.0, nothing, motion.time[-1], peaks, peak_slopes)
         slopes = motion.log_slopes(answer.last) - motion.log_slopes(answer.first)
         if gradient and answer.last == latest:
             slopes += motion.log_rate(latest) * self._latest_slopes(values, speed, load, data)
@@ -171,15 +178,16 @@ class DecayAnalysis:
         integrator = self._with_sensitivities if gradient else self._plain
         required, start = self.requirement, dict(zip(self._dae.data_names, data, strict=True))
         x0 = np.array([start.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
-        stretch = STRETCH_CYCLES * 2 * math.pi / max(np.abs(np.linalg.eigvals(A).imag).max(), 20.0)
-        motion = TangentMotion(np.zeros(1), x0[:, None], np.zeros((x0.size, len(values) if gradient else 0, 1)))
+        stretch = STRETCH_CYCLES * 2 * math.pi / fastest_rate(A)
+        still = np.zeros((x0.size, len(values) if gradient else 0, 1))
+        motion = TangentMotion(self._dae.state_names, np.zeros(1), x0[:, None], still)
         for stretches in range(1, MAX_STRETCHES + 1):
             x, S, t = motion.x[:, -1], motion.S[:, :, -1] if gradient else None, motion.time[-1]
             try:
                 motion = motion.with_more(t, stretch, integrator(x, values, speed, load, stretch, t, S, data=data))
             except FloatingPointError:
                 return motion, None
-            yaw, rate = motion.x[0], motion.x[1]
+            yaw, rate = motion.state("yaw_angle"), motion.state("yaw_rate")
             first = np.abs(yaw[: integrator.steps]).max()
             if abs(yaw[-1]) > DIVERGED * first:
                 return motion, None
@@ -191,7 +199,7 @@ class DecayAnalysis:
                 cycle = (answer.last - answer.first) / required.cycles
                 if settled or motion.time[-1] >= answer.last + MORE_CYCLES * cycle:
                     return motion, answer
-        return motion, decay(motion.time, motion.x[0], motion.x[1], required.cycles, 0.9 * motion.time[-1])
+        return motion, decay(motion.time, yaw, rate, required.cycles, CREPT * motion.time[-1])
 
     def _peaks_of(
         self, motion: TangentMotion, values: list[float], speed: float, load: float, gradient: bool, data: np.ndarray
@@ -221,7 +229,7 @@ class DecayAnalysis:
 
         def latest(factors: np.ndarray) -> float:
             A = self.model.state_matrix(ca.DM(factors * values), speed, load, data).full()
-            return latest_count(A, self.requirement.cycles)
+            return latest_count(A, self.requirement.cycles, self._dae.state_names)
 
         steps = DIFFERENCE * np.eye(len(values))
         return np.array([(latest(1 + h) - latest(1 - h)) / (2 * DIFFERENCE) for h in steps])
@@ -347,13 +355,3 @@ class DecayAnalysis:
             )
             found.append(max(point, self.at(design, float(best.x), load), key=lambda p: p.ratio))
         return found
-
-
-def decay_analysis(study: Study) -> DecayAnalysis:
-    """The analysis of a study, kept with its compiled integrators: the same study is met several times on its way."""
-    return _kept(study.model_dump_json())
-
-
-@lru_cache(maxsize=8)
-def _kept(study_json: str) -> DecayAnalysis:
-    return DecayAnalysis(Study.model_validate_json(study_json))

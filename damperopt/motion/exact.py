@@ -7,6 +7,7 @@ the torque exceeds it. It checks the smooth model, and designs made with it.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, Literal
@@ -17,10 +18,11 @@ from scipy.integrate import solve_ivp
 
 from ..dynamics import build
 from ..expressions.corners import Switched
-from ..stability.linear import linear_gear
+from ..stability.linear import LinearGear, LinearModel
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 from ..symbols import data_values, symbolic
+from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
 
@@ -85,19 +87,22 @@ def simulate_exactly(
 
 
 class ExactSimulator:
-    """Exact motion of one gear with one design; see `simulate_exactly`.
+    """Exact motion of a gear, built once, for any design, speed, load and disturbance; see `simulate_exactly`.
 
     Parameters
     ----------
     study : Study
     design : mapping or None
-        Design variables [SI]; None: the starts of the study.
+        Design variables [SI] of calls that give none; None: the starts of the study.
+    model : LinearModel or None
+        Of the study, if it is at hand.
     """
 
-    def __init__(self, study: Study, design: Mapping[str, float] | None = None):
-        self.study = study
-        design = study.start if design is None else design
-        self.gear = linear_gear(study, design)  # refuses an incomplete design
+    def __init__(self, study: Study, design: Mapping[str, float] | None = None, model: LinearModel | None = None):
+        self.study, self.model = study, LinearModel(study) if model is None else model
+        self.design = study.start if design is None else dict(design)
+        if design is not None:
+            self.model.at(self.design)  # refuses an incomplete design
         corners = Switched()
         dae = build(symbolic(study), corners)
         friction = corners.switches.pop("friction", None)
@@ -106,17 +111,30 @@ class ExactSimulator:
         modes = [switch.mode for switch in corners.switches.values()]
         modes += [friction.mode] if friction else [ca.SX.sym("no friction")]
         step = ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ dae.alg if dae.z.numel() else dae.z
-        outputs = {"yaw_acceleration": dae.ode[1], **dae.outputs}
+        self.yaw_rate = dae.index("yaw_rate")
+        outputs = {"yaw_acceleration": dae.ode[self.yaw_rate], **dae.outputs}
+        self.unknowns = dae.z.numel()
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
 
-        inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
-        known = ca.vertcat(dae.design, dae.data), ca.DM([*(design[name] for name in dae.design_names), *data_values(study)])
+        inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque), dae.design]
+        known = dae.data, ca.DM(data_values(study))
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
         motion = [dae.ode, step, arguments, ca.SX(dae.outputs["torque_without_friction"])]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self.motion = _Fast(inputs, [ca.substitute(e, *known) for e in motion])
         self.rows = _Fast(inputs, [ca.substitute(rows, *known)])
         self.first_guess = _Fast(inputs, [ca.substitute(ca.SX(dae.first_guess()), *known)])
+
+    @property
+    def gear(self) -> LinearGear:
+        """Linear gear with the design of calls that give none."""
+        return self.model.at(self.design)
+
+    def with_design(self, design: Mapping[str, float]) -> ExactSimulator:
+        """The same, for calls that give no design; nothing is built again."""
+        other = copy.copy(self)
+        other.design = dict(design)
+        return other
 
     def __call__(
         self,
@@ -126,8 +144,12 @@ class ExactSimulator:
         duration: float,
         tolerance: float = 1e-10,
         points: int | None = None,
+        *,
+        design: Mapping[str, float] | None = None,
     ) -> Trajectory:
-        """Motion at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate_exactly`."""
+        """Motion of a design at `speed` [m/s] and `load` [N] over `duration` [s]; see `simulate_exactly`."""
+        if design is not None:
+            return self.with_design(design)(speed, load, disturbance, duration, tolerance, points)
         load = max(self.study.envelope.loads) if load is None else load
         disturbance = posed(self.study, self.state_names, speed, load, disturbance, duration)
         enough = output_points(self.gear, speed, load, duration)
@@ -180,39 +202,41 @@ class _Run:
         self._model, self._tolerance = model, tolerance
         self._torque, self._unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
         self._wheel_rate = speed / model.study.gear.wheel_radius
-        self._point = np.array([speed, load, 0.0])
+        self._point, self._external = np.array([speed, load, 0.0]), 2
+        self._design = np.array([model.design[name] for name in model.model.design_names])
+        self._yaw_rate = model.yaw_rate
         self._x0 = np.array(disturbance.start(model.state_names))
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
         self._sticks = False
-        self._z = model.first_guess(self._x0, np.zeros(model.motion._in[1].size), self._modes, self._point)[0].copy()
-        fastest = np.abs(np.linalg.eigvals(model.gear.matrices(speed, load)[0]).imag).max()
+        z = np.zeros(model.unknowns)
+        self._z = model.first_guess(self._x0, z, self._modes, self._point, self._design)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
-        self._max_step = 2 * math.pi / max(fastest, 20.0) / steps
+        self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
         """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""
-        self._point[2] = self._torque
+        self._point[self._external] = self._torque
         if self._unbalance:
-            self._point[2] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
+            self._point[self._external] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
         if not self._z.size:
-            return self._model.motion(x, self._z, self._modes, self._point)
+            return self._model.motion(x, self._z, self._modes, self._point, self._design)
         for _ in range(NEWTON_STEPS):
-            found = self._model.motion(x, self._z, self._modes, self._point)
+            found = self._model.motion(x, self._z, self._modes, self._point, self._design)
             change = np.abs(found[1]).max()
             if change < NEWTON_TOLERANCE:
                 return found
             if not np.isfinite(change):
                 break
             self._z = self._z - found[1]
-        self._z = self._model.first_guess(x, self._z, self._modes, self._point)[0].copy()
+        self._z = self._model.first_guess(x, self._z, self._modes, self._point, self._design)[0].copy()
         raise _CannotClose
 
     def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
         rate = self._evaluated(t, x)[0].copy()
         if self._sticks:
-            rate[1] = 0.0
+            rate[self._yaw_rate] = 0.0
         return rate
 
     def rows_at(self, time: np.ndarray) -> tuple[list[np.ndarray], str]:
@@ -250,7 +274,7 @@ class _Run:
 
     def _row(self, t: float, x: np.ndarray) -> np.ndarray:
         self._evaluated(t, x)
-        return self._model.rows(x, self._z, self._modes, self._point)[0].copy()
+        return self._model.rows(x, self._z, self._modes, self._point, self._design)[0].copy()
 
     def _events(self) -> list[Callable[[float, np.ndarray], float]]:
         """Functions that fall through zero when a corner is passed, friction last."""
@@ -261,7 +285,7 @@ class _Run:
         def grip(t: float, x: np.ndarray) -> float:
             if self._sticks:
                 return self._model.friction_torque - abs(float(self._evaluated(t, x)[3][0]))
-            return float(x[1] * self._modes[-1])
+            return float(x[self._yaw_rate] * self._modes[-1])
 
         functions = [corner(i) for i in range(self._model.corners)]
         functions += [grip] if self._model.friction_torque else []
@@ -281,7 +305,7 @@ class _Run:
             self._sticks, self._modes[-1] = False, np.sign(torque)
             return
         if self._model.corners in passed:
-            x[1] = 0.0
+            x[self._yaw_rate] = 0.0
         self._settle(t, x, [*others, self._model.corners])
 
     def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
@@ -295,9 +319,9 @@ class _Run:
                     self._modes[i] = np.sign(side) if side else self._modes[i]
         if not self._model.friction_torque or self._model.corners not in which:
             return
-        if x[1] == 0.0:
+        if x[self._yaw_rate] == 0.0:
             torque = float(self._evaluated(t, x)[3][0])
             self._sticks = abs(torque) <= self._model.friction_torque
             self._modes[-1] = 0.0 if self._sticks else np.sign(torque)
         else:
-            self._sticks, self._modes[-1] = False, np.sign(x[1])
+            self._sticks, self._modes[-1] = False, np.sign(x[self._yaw_rate])

@@ -28,7 +28,7 @@ NEWTON_STEPS = 6
 """Of `dae.eliminate`: enough for the residual to reach rounding at yaw angles up to 0.6 rad."""
 
 
-IDAS_FLOOR = 1e-12
+IDAS_FLOOR = 3e-12
 """Relative tolerance below which IDAS no longer finds a first step with algebraic unknowns."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,18 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ..study.study import Study
 
-__all__ = ["PEAKS", "Decay", "crossings", "decay", "extrema", "latest_count", "loads_of"]
+__all__ = [
+    "PEAKS",
+    "Decay",
+    "crossings",
+    "decay",
+    "extrema",
+    "fastest_rate",
+    "latest_count",
+    "loads_of",
+    "slowest_rate",
+    "yaw_frequency",
+]
 
 PEAKS = ("linkage_torque", "yaw_angle", "damper_stroke", "damper_force", "spring_force")
 """What sizes the parts where `requirements.limit_event` is ``simulated``."""
@@ -18,11 +30,35 @@ PEAKS = ("linkage_torque", "yaw_angle", "damper_stroke", "damper_force", "spring
 
 NEWTON_STEPS = 6
 
+CREEPING = 1.0
+"""Rate [rad/s] below which a mode is a creep and sets no time scale."""
 
-def latest_count(state_matrix: np.ndarray, cycles: int) -> float:
+EVEN_IF_SLOW = 20.0
+"""Rate [rad/s] that time steps follow even where every mode is slower."""
+
+YAW = ("yaw_angle", "yaw_rate")
+
+
+def yaw_frequency(state_matrix: np.ndarray, state_names: Sequence[str]) -> float:
+    """Circular frequency [rad/s] of the yaw angle with all else at rest, at least `CREEPING`."""
+    angle, rate = (state_names.index(name) for name in YAW)
+    return math.sqrt(max(-state_matrix[rate, angle], CREEPING**2))
+
+
+def fastest_rate(state_matrix: np.ndarray) -> float:
+    """Largest circular frequency [rad/s] of the modes, at least `EVEN_IF_SLOW`: what time steps must follow."""
+    return float(max(np.abs(np.linalg.eigvals(state_matrix).imag).max(), EVEN_IF_SLOW))
+
+
+def slowest_rate(state_matrix: np.ndarray, state_names: Sequence[str]) -> float:
+    """Least circular frequency [rad/s] of the modes that oscillate, and of the yaw angle alone: what a cycle may last."""
+    rates = np.abs(np.linalg.eigvals(state_matrix).imag)
+    return float(min([yaw_frequency(state_matrix, state_names), *rates[rates > CREEPING]]))
+
+
+def latest_count(state_matrix: np.ndarray, cycles: int, state_names: Sequence[str]) -> float:
     """Time [s] from which the decay is taken at the latest: twice m periods of the yaw mode with all else at rest."""
-    stiffness = max(-state_matrix[1, 0], 1.0)
-    return 2 * cycles * 2 * math.pi / math.sqrt(stiffness)
+    return 2 * cycles * 2 * math.pi / yaw_frequency(state_matrix, state_names)
 
 
 def loads_of(study: Study) -> tuple[float, ...]:

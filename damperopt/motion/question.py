@@ -13,6 +13,7 @@ from ..errors import ConfigError
 from ..stability.linear import LinearGear
 from ..study.disturbances import Disturbance
 from ..study.study import Study
+from .measure import fastest_rate
 
 __all__ = ["UNCLOSED", "output_points", "posed", "refuse_start", "valid_part"]
 
@@ -46,8 +47,7 @@ def output_points(gear: LinearGear, speed: float, load: float, duration: float) 
     ConfigError
         If they would be too many.
     """
-    fastest = np.abs(np.linalg.eigvals(gear.matrices(speed, load)[0]).imag).max()
-    step = 2 * math.pi / max(fastest, 20.0) / PER_CYCLE
+    step = 2 * math.pi / fastest_rate(gear.matrices(speed, load)[0]) / PER_CYCLE
     if duration > MAX_POINTS * step:
         longest = MAX_POINTS * step
         raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")

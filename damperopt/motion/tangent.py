@@ -17,16 +17,23 @@ __all__ = ["TangentMotion", "output_functions", "weights_at_peak"]
 
 @dataclass(frozen=True)
 class TangentMotion:
-    """States (n, m) and their sensitivities to ln(design variables) (n, d, m) at m times."""
+    """States (n, m) by name and their sensitivities to ln(design variables) (n, d, m) at m times."""
 
+    state_names: tuple[str, ...]
     time: np.ndarray
     x: np.ndarray
     S: np.ndarray
+
+    def state(self, name: str) -> np.ndarray:
+        """(m,) values of one state."""
+        found: np.ndarray = self.x[self.state_names.index(name)]
+        return found
 
     def with_more(self, start: float, duration: float, found: Solution) -> TangentMotion:
         """With a stretch that begins where this ends."""
         time = start + np.linspace(0, duration, found.x.shape[1])[1:]
         return TangentMotion(
+            self.state_names,
             np.append(self.time, time),
             np.hstack([self.x, found.x[:, 1:]]),
             np.concatenate([self.S, found.sensitivities[:, :, 1:]], axis=2),
@@ -36,20 +43,21 @@ class TangentMotion:
         """d ln|yaw|/d ln(design variable) at a time."""
         i = min(max(int(np.searchsorted(self.time, moment)) - 1, 0), self.time.size - 2)
         pair = slice(i, i + 2)
-        values, rates = (np.vstack([self.x[k, pair], self.S[k, :, pair].reshape(-1, 2)]) for k in (0, 1))
+        rows = [self.state_names.index(name) for name in ("yaw_angle", "yaw_rate")]
+        values, rates = (np.vstack([self.x[k, pair], self.S[k, :, pair].reshape(-1, 2)]) for k in rows)
         near = CubicHermiteSpline(self.time[pair], values, rates, axis=1)(moment)
         return near[1:] / near[0]
 
     def log_rate(self, moment: float) -> float:
         """d ln|yaw|/dt [1/s]."""
-        spline = CubicHermiteSpline(self.time, self.x[0], self.x[1])
+        spline = CubicHermiteSpline(self.time, self.state("yaw_angle"), self.state("yaw_rate"))
         return float(spline(moment, 1) / spline(moment))
 
 
 def output_functions(dae: DAE, names: Sequence[str]) -> tuple[ca.Function, ca.Function]:
-    """Outputs by name (or the yaw angle) of a state, and their d/d ln(design variable) given the sensitivities of the state."""
+    """Outputs or states by name, and their d/d ln(design variable) given the sensitivities of the states."""
     model = eliminate(dae, NEWTON_STEPS)
-    outputs = ca.vertcat(*(model.x[0] if name == "yaw_angle" else model.outputs[name] for name in names))
+    outputs = ca.vertcat(*(model.x[model.index(name)] if name in model.state_names else model.outputs[name] for name in names))
     outputs = ca.substitute(outputs, model.yaw_torque, 0)
     inputs = [model.design, model.speed, model.load, model.data]
     S = ca.SX.sym("S", model.x.numel(), model.design.numel())

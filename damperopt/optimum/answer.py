@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..results import ConstraintResult, LocalOptimum, Relaxation, StartResult
 from ..study.components import unit_of_name
 from ..study.study import Study
@@ -24,11 +26,13 @@ SAME_MASS = 1e-4
 """Starts whose masses agree to this relative difference are counted as one local optimum."""
 
 
-def constraint_results(problem: DesignProblem, best: EnvelopeSolution) -> tuple[ConstraintResult, ...]:
-    """Every constraint at the optimum, with what it costs."""
+def constraint_results(
+    problem: DesignProblem, best: EnvelopeSolution, factors: np.ndarray | None = None
+) -> tuple[ConstraintResult, ...]:
+    """Every constraint at the optimum, with what it costs; `factors` as `DesignProblem.mass` takes them."""
     study, solution, worst = problem.study, best.solution, best.worst[0]
     margin = study.required.stability_margin
-    price = float(solution.data_gradient[problem.data_names.index("requirements.stability_margin")])
+    price = float(solution.gradient.data[problem.data_names.index("requirements.stability_margin")])
     results = [
         ConstraintResult(
             name="stability_margin",
@@ -46,7 +50,7 @@ def constraint_results(problem: DesignProblem, best: EnvelopeSolution) -> tuple[
     if best.decay:
         required = study.required.decay
         assert required is not None
-        carried = float(solution.cut_multipliers.sum())
+        carried = float(solution.multipliers.cuts.sum())
         results.append(
             ConstraintResult(
                 name="decay_ratio",
@@ -61,8 +65,8 @@ def constraint_results(problem: DesignProblem, best: EnvelopeSolution) -> tuple[
                 relaxed_by=("requirements.decay.ratio", "requirements.decay.cycles", "envelope.speed"),
             )
         )
-    values, rows = problem.values(solution.design), problem.rows(solution.design)
-    for constraint, multiplier in zip(problem.constraints, solution.row_multipliers, strict=True):
+    values, rows = problem.values(solution.design, factors), problem.rows(solution.design, factors)
+    for constraint, multiplier in zip(problem.constraints, solution.multipliers.rows, strict=True):
         value, limit = values[constraint.name]
         per_limit = multiplier / limit if constraint.ratio else multiplier
         results.append(
@@ -85,7 +89,7 @@ def constraint_results(problem: DesignProblem, best: EnvelopeSolution) -> tuple[
 def _active_bounds(problem: DesignProblem, best: EnvelopeSolution) -> tuple[ConstraintResult, ...]:
     """Bounds of design variables that carry a multiplier (fixed variables: what fixing them costs)."""
     found = []
-    for variable, multiplier in zip(problem.variables, best.solution.bound_multipliers, strict=True):
+    for variable, multiplier in zip(problem.variables, best.solution.multipliers.bounds, strict=True):
         if variable.name not in problem.design_names or abs(multiplier) < 1e-6 * best.solution.objective:
             continue
         upper = multiplier > 0

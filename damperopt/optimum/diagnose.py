@@ -11,9 +11,11 @@ import numpy as np
 
 from ..results import Infeasibility, OperatingPoint, Relaxation
 from ..stability.worst import worst_points
-from .exchange import best_local, first_points, solve_with_decay
+from .decay_exchange import solve_with_decay
+from .exchange import first_points
+from .local import best_local
 from .problem import DesignProblem
-from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program, relaxable
+from .program import ElasticFactorProgram, ElasticHurwitzProgram, Program, price
 from .scan import steady_designs
 from .solve import NlpSolver
 
@@ -116,7 +118,7 @@ def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]
     if not reached:
         return Diagnosis(None, None)
     best = min(reached, key=lambda found: found.decay[0].ratio)
-    at_bounds = np.abs(best.solution.bound_multipliers[: len(problem.design_names)]) > HOLDS_BACK
+    at_bounds = np.abs(best.solution.multipliers.bounds[: len(problem.design_names)]) > HOLDS_BACK
     bounds = tuple(f"design.{v.name}" for v, at in zip(problem.variables, at_bounds, strict=False) if at)
     required, worst = problem.study.required.decay, best.decay[0]
     assert required is not None
@@ -130,12 +132,12 @@ def _decay_out_of_reach(solver: NlpSolver, starts: Sequence[Mapping[str, float]]
         load=worst.load,
     )
     alone = [ratio]
-    for constraint, multiplier in zip(problem.constraints, best.solution.row_multipliers, strict=True):
+    for constraint, multiplier in zip(problem.constraints, best.solution.multipliers.rows, strict=True):
         if multiplier <= HOLDS_BACK:
             continue
         form, name = ElasticHurwitzProgram, constraint.name
         relaxed = solve_with_decay(solver, best.solution.design, best.solution.points, form, relaxed=(name,))
-        rows = problem.rows(relaxed.solution.design)
+        rows = problem.rows(relaxed.solution.design, solver.simulated_factors(relaxed.solution.design))
         if relaxed.solved and all(row <= ENOUGH for other, row in rows.items() if other != name):
             outcome = _outcome(solver, relaxed.solution.design, relaxed.worst[0])
             alone.append(_relaxation(solver, outcome, name))
@@ -170,8 +172,9 @@ def _elastic(
             outcomes.append(outcome)
         if not solution.converged:
             return outcomes, False
-        margin = solution.extra[len(relaxable(problem)) - 1]  # after the slacks
-        violating = [p for p in worst if p.abscissa > -margin - problem.study.solver.margin_reserve / 2]
+        assert solution.margin is not None
+        allowed = -solution.margin - problem.study.solver.margin_reserve / 2
+        violating = [p for p in worst if p.abscissa > allowed]
         if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
             return outcomes, True
         points += [(p.speed, p.load) for p in violating]
@@ -182,11 +185,11 @@ def _outcome(solver: NlpSolver, design: dict[str, float], worst: OperatingPoint)
     """What a design would need to be relaxed, and at what price (that of the elastic program)."""
     problem = solver.problem
     required = problem.study.required.stability_margin
-    slacks = {name: max(row, 0.0) for name, row in problem.rows(design).items()}
-    price = sum((1 if c.ratio else 10) * slacks[c.name] for c in problem.constraints)
-    slacks[_STABILITY] = max(required + worst.abscissa, 0.0)
-    price += slacks[_STABILITY] / max(required, 0.1)
-    return _Elastic(price, design, slacks, worst.speed, worst.load)
+    rows = problem.rows(design, solver.simulated_factors(design))
+    slacks, lost = {name: max(row, 0.0) for name, row in rows.items()}, max(required + worst.abscissa, 0.0)
+    cost = price(problem, slacks, lost)
+    slacks[_STABILITY] = lost
+    return _Elastic(cost, design, slacks, worst.speed, worst.load)
 
 
 def _relaxation(solver: NlpSolver, elastic: _Elastic, name: str) -> Relaxation:
@@ -203,7 +206,7 @@ def _relaxation(solver: NlpSolver, elastic: _Elastic, name: str) -> Relaxation:
             load=elastic.load,
         )
     constraint = problem.constraints[problem.constraint_names.index(name)]
-    _, limit = problem.values(elastic.design)[name]
+    _, limit = problem.values(elastic.design, solver.simulated_factors(elastic.design))[name]
     sign = -1 if constraint.at_least else 1
     needed = limit * float(np.exp(sign * slack)) if constraint.ratio else limit + sign * slack
     return Relaxation(name=name, limit=limit, needed=needed, unit=constraint.unit, inputs=constraint.relaxed_by)

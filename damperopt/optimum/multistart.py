@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import lru_cache
 
 from ..study.study import Study
-from .exchange import EnvelopeSolution, best_local, first_points
+from .exchange import EnvelopeSolution, first_points
+from .local import best_local
 from .problem import DesignProblem
 from .scan import promising_designs, sobol_designs
 from .solve import NlpSolver
@@ -16,7 +16,7 @@ from .solve import NlpSolver
 HOPELESS = 3
 """Sobol starts that are still tried where the scan finds no design."""
 
-__all__ = ["StartOutcome", "run_starts", "solver_for", "starting_designs"]
+__all__ = ["StartOutcome", "run_starts", "starting_designs"]
 
 
 @dataclass(frozen=True)
@@ -51,23 +51,29 @@ def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
     return [study.start, *promising, *(dict(zip(problem.design_names, row, strict=True)) for row in sobol)]
 
 
-@lru_cache(maxsize=4)
-def solver_for(study_json: str) -> NlpSolver:
-    """Solver of a study given as JSON; kept, since a process meets the same study many times."""
-    return NlpSolver(DesignProblem(Study.model_validate_json(study_json)))
-
-
-def _run(study_json: str, index: int, start: dict[str, float]) -> StartOutcome:
-    solver = solver_for(study_json)
+def _run(solver: NlpSolver, index: int, start: dict[str, float]) -> StartOutcome:
     return StartOutcome(index, best_local(solver, start, first_points(solver)))
 
 
-def run_starts(study: Study, pool: Executor | None, progress: Callable[[int, int], None] | None) -> list[StartOutcome]:
+class _Worker:
+    """What a worker process keeps between the starts that it is sent: solvers are not sent, each process builds its own."""
+
+    solver: NlpSolver | None = None
+
+    @classmethod
+    def run(cls, study: Study, index: int, start: dict[str, float]) -> StartOutcome:
+        if cls.solver is None or cls.solver.problem.study != study:
+            cls.solver = NlpSolver(DesignProblem(study))
+        return _run(cls.solver, index, start)
+
+
+def run_starts(solver: NlpSolver, pool: Executor | None, progress: Callable[[int, int], None] | None) -> list[StartOutcome]:
     """Local optima from all starts.
 
     Parameters
     ----------
-    study : Study
+    solver : NlpSolver
+        Of this process; worker processes build their own.
     pool : Executor or None
         Of `executor`; None: one after another in this process.
     progress : callable or None
@@ -78,15 +84,14 @@ def run_starts(study: Study, pool: Executor | None, progress: Callable[[int, int
     list of StartOutcome
         In the order of the starts, whatever the order of completion.
     """
-    text = study.model_dump_json()
-    starts = starting_designs(solver_for(text).problem)
+    starts = starting_designs(solver.problem)
     total = len(starts)
 
     def outcomes() -> Iterator[StartOutcome]:
         if pool is None:
-            yield from (_run(text, index, start) for index, start in enumerate(starts))
+            yield from (_run(solver, index, start) for index, start in enumerate(starts))
         else:
-            yield from pool.map(_run, [text] * total, range(total), starts)
+            yield from pool.map(_Worker.run, [solver.problem.study] * total, range(total), starts)
 
     found = []
     for outcome in outcomes():

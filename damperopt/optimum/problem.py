@@ -8,17 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..dynamics import build
-from ..motion.decay import decay_analysis
 from ..motion.measure import PEAKS
 from ..objectives import sized_layout
 from ..quantities.named import DesignVariable
 from ..stability.linear import LinearModel
+from ..stability.screening import Screening
 from ..strength.limit_event import peaks_of
 from ..study.study import Study
 from ..symbols import data_names, data_values, symbolic
@@ -75,7 +76,6 @@ class DesignProblem:
         self.data = np.array(data_values(study))
         self.data_names = data_names(study)
         self.load_limit = max(study.envelope.loads)
-        self._factors: dict[tuple[float, ...], np.ndarray] = {}
 
         symbols = symbolic(study)
         dae = build(symbols)
@@ -87,7 +87,6 @@ class DesignProblem:
         self.constraints: tuple[Constraint, ...] = tuple(
             strength(symbols.study, design, sized) + geometry(symbols.study, design, link, sized)
         )
-        self.sizes = sized.sizes
         self.size_names = tuple(size.name for size in sized.sizes)
         self.part_names = tuple(parts)
         self.constraint_names = tuple(c.name for c in self.constraints)
@@ -125,7 +124,7 @@ class DesignProblem:
         return ca.sum1(self._mass(*inputs)), self._rows(*inputs)
 
     def estimated_peaks(self, design: ca.SX, data: ca.SX, load_limit: ca.SX) -> ca.SX:
-        """(5,) `decay.PEAKS` of the limit event before any simulation, as expressions."""
+        """(5,) `measure.PEAKS` of the limit event before any simulation, as expressions."""
         return self._event(design, data, load_limit, ESTIMATED)
 
     def stiffness_and_damping(self, design: ca.SX, data: ca.SX) -> tuple[ca.SX, ca.SX]:
@@ -137,23 +136,29 @@ class DesignProblem:
         """Design variables and sizes of parts [SI] of scaled variables."""
         return ca.vertcat(*(ca.exp(x[i]) if v.logarithmic else x[i] for i, v in enumerate(self.variables)))
 
-    # plain functions of a design, for reports, tests and other optimisers
+    @cached_property
+    def screening(self) -> Screening:
+        """The gear with any stiffness and damping, built when it is first asked for."""
+        return Screening(self.study)
 
-    def mass(self, design: Mapping[str, float]) -> float:
+    # plain functions of a design, for reports, tests and other optimisers. `factors` are simulated over estimated peaks of
+    # the limit event, of `factors_of`; left out, a torque must be the limit event. None of them simulates.
+
+    def mass(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> float:
         """Total mass of a design with the lightest admissible rod [kg]."""
-        return float(sum(self.parts(design).values()))
+        return float(sum(self.parts(design, factors).values()))
 
-    def parts(self, design: Mapping[str, float]) -> dict[str, float]:
+    def parts(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, float]:
         """Mass by part [kg]."""
-        return dict(zip(self.part_names, self._call(self._mass, design), strict=True))
+        return dict(zip(self.part_names, self._call(self._mass, design, factors), strict=True))
 
-    def rows(self, design: Mapping[str, float]) -> dict[str, float]:
+    def rows(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, float]:
         """Strength and geometry rows, <= 0 where met (logarithmic ratios, or metres); the rod limits are met by sizing."""
-        return dict(zip(self.constraint_names, self._call(self._rows, design), strict=True))
+        return dict(zip(self.constraint_names, self._call(self._rows, design, factors), strict=True))
 
-    def values(self, design: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    def values(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, tuple[float, float]]:
         """Value and limit of each strength and geometry constraint [SI]."""
-        pairs = np.reshape(self._call(self._values, design), (2, -1)).T
+        pairs = np.reshape(self._call(self._values, design, factors), (2, -1)).T
         return {name: (float(v), float(lim)) for name, (v, lim) in zip(self.constraint_names, pairs, strict=True)}
 
     def yaw_numbers(self, design: Mapping[str, float]) -> dict[str, float]:
@@ -161,25 +166,31 @@ class DesignProblem:
         stiffness, damping = self._yaw(self._vector(design), self.data)
         return {"torsional_stiffness": float(stiffness), "torsional_damping": float(damping)}
 
-    def limit_event(self, design: Mapping[str, float]) -> dict[str, float]:
-        """Peaks of the limit event by name [SI], in the order of `decay.PEAKS`."""
-        peaks = self._event(self._vector(design), self.data, self.load_limit, self.factors(design))
+    def limit_event(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, float]:
+        """Peaks of the limit event by name [SI], in the order of `measure.PEAKS`."""
+        peaks = self._event(self._vector(design), self.data, self.load_limit, self._checked(factors))
         return dict(zip(PEAKS, peaks.full().ravel().tolist(), strict=True))
 
-    def factors(self, design: Mapping[str, float]) -> np.ndarray:
-        """(5,) simulated over estimated peaks of the limit event; ones where a torque is the limit event."""
-        if self.study.required.limit_event != "simulated":
-            return ESTIMATED
-        key = tuple(self._vector(design))
-        if key not in self._factors:
-            simulated = decay_analysis(self.study).largest_peaks(design)[0]
-            estimated = self._event(self._vector(design), self.data, self.load_limit, ESTIMATED).full().ravel()
-            self._factors = {key: simulated / estimated}  # the last design is asked for several times
-        return self._factors[key]
+    def factors_of(self, design: Mapping[str, float], peaks: Mapping[str, float]) -> np.ndarray:
+        """(5,) given over estimated peaks of the limit event of a design.
 
-    def least_sizes(self, design: Mapping[str, float]) -> dict[str, float]:
+        Parameters
+        ----------
+        design : mapping
+            Design variables by name [SI].
+        peaks : mapping
+            By the names of `measure.PEAKS` [SI], as simulated, or as a result holds them in `limit_event`.
+
+        Returns
+        -------
+        ndarray
+        """
+        estimated = self._event(self._vector(design), self.data, self.load_limit, ESTIMATED).full().ravel()
+        return np.array([peaks[name] for name in PEAKS]) / estimated
+
+    def least_sizes(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, float]:
         """Least size of each part that meets all its limits, such as the rod diameter [SI]."""
-        least = self._least(self._vector(design), self.data, self.load_limit, self.factors(design))
+        least = self._least(self._vector(design), self.data, self.load_limit, self._checked(factors))
         return dict(zip(self.size_names, least.full().ravel().tolist(), strict=True))
 
     def over_designs(self, designs: np.ndarray, factors: np.ndarray = ESTIMATED) -> dict[str, np.ndarray]:
@@ -190,7 +201,7 @@ class DesignProblem:
         designs : ndarray
             (m, n) design variables in the order of `design_names` [SI].
         factors : ndarray
-            As `factors`, the same for all.
+            Of `factors_of`, the same for all; left out: the peaks as estimated.
 
         Returns
         -------
@@ -210,9 +221,14 @@ class DesignProblem:
     def _vector(self, design: Mapping[str, float]) -> np.ndarray:
         return np.array([design[name] for name in self.design_names])
 
-    def _call(self, function: ca.Function, design: Mapping[str, float]) -> list[float]:
-        sizes, factors = list(self.least_sizes(design).values()), self.factors(design)
-        result = function(self._vector(design), sizes, self.data, self.load_limit, factors)
+    def _checked(self, factors: np.ndarray | None) -> np.ndarray:
+        if factors is None and self.study.required.limit_event == "simulated":
+            raise ValueError("this design is sized by simulated peaks: pass factors, of NlpSolver.simulated_factors")
+        return ESTIMATED if factors is None else factors
+
+    def _call(self, function: ca.Function, design: Mapping[str, float], factors: np.ndarray | None) -> list[float]:
+        sizes = list(self.least_sizes(design, factors).values())
+        result = function(self._vector(design), sizes, self.data, self.load_limit, self._checked(factors))
         return result.full().ravel(order="F").tolist()
 
     # the scaled variables

@@ -20,16 +20,16 @@ size the parts are modelled in the same way.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import reduce
 from typing import Any, ClassVar, Protocol
 
 import casadi as ca
 import numpy as np
 
 from ..motion.measure import PEAKS
-from ..stability.hurwitz import characteristic_polynomial, lienard_chipart
-from .cuts import Cut
+from ..stability.hurwitz import characteristic_polynomial
+from .conditions import ConditionNumbers, Conditions, HurwitzConditions, Slots, StableFactors
+from .cuts import Cut, monomials
+from .parameters import Blocks, Instance, Limits, instance_of
 from .problem import ESTIMATED, DesignProblem
 
 __all__ = [
@@ -38,8 +38,8 @@ __all__ = [
     "ElasticHurwitzProgram",
     "FactorProgram",
     "HurwitzProgram",
-    "Instance",
     "Program",
+    "price",
     "relaxable",
 ]
 
@@ -54,17 +54,17 @@ NEVER = -1e3
 EXCESS_PRICE = 1e3
 """kg per unit of ln(decay ratio) by which cuts may be exceeded: far above any multiplier, so that it is 0 where it can be."""
 
+SLOWEST_ROOT = 1e-3
+"""Added to the magnitudes of roots [1/s] whose mean scales time, so that a root at rest does not."""
 
-@dataclass(frozen=True)
-class Instance:
-    """Numbers that turn a program into one problem: start, bounds and parameters."""
+RATIO_PRICE, LENGTH_PRICE = 1.0, 10.0
+"""Price of a relaxation: of a unit of a logarithmic ratio, and of a metre."""
 
-    x0: np.ndarray
-    lbx: np.ndarray
-    ubx: np.ndarray
-    lbg: np.ndarray
-    ubg: np.ndarray
-    p: np.ndarray
+LEAST_MARGIN = 0.1
+"""Margin [1/s] whose loss costs 1 where less than that is required."""
+
+SLACK = 1e-3
+"""By how much the slacks of an elastic program start above what the start needs."""
 
 
 class Program(Protocol):
@@ -73,11 +73,21 @@ class Program(Protocol):
     Attributes
     ----------
     nlp : dict
-        x, p, f, g for `casadi.nlpsol`. x begins with the scaled variables and, with a decay requirement, the excess of the
-        cuts; g with the strength, geometry and decay rows; p with data, load limit, speeds and loads of the slots.
+        x, p, f, g for `casadi.nlpsol`.
+    variables : Blocks
+        Of x: ``design``, scaled; ``excess`` of the cuts, with a decay requirement; ``stability``, of the conditions; an
+        elastic program has ``slack`` and ``margin`` too.
+    rows : Blocks
+        Of g: ``strength`` and geometry; ``decay``; ``stability``.
+    parameters : Blocks
+        Of p: ``data``, ``load_limit``; ``speeds``, ``loads`` and ``rates`` of the slots; with simulated peaks
+        ``simulated``, a switch, and ``peaks``, their models; with a decay requirement ``cuts``; ``stability``.
     """
 
     nlp: dict[str, ca.SX]
+    variables: Blocks
+    rows: Blocks
+    parameters: Blocks
 
     def __init__(self, problem: DesignProblem, slots: int): ...
 
@@ -90,41 +100,46 @@ def relaxable(problem: DesignProblem) -> tuple[str, ...]:
     return (*problem.constraint_names, *decay, "stability_margin")
 
 
-class _Slots:
+def price(problem: DesignProblem, slacks: Mapping[str, Any], lost_margin: Any) -> Any:
+    """What a relaxation costs: strength and geometry slacks by name, missing ones for nothing, and the margin lost [1/s]."""
+    prices = {c.name: RATIO_PRICE if c.ratio else LENGTH_PRICE for c in problem.constraints}
+    required = max(problem.study.required.stability_margin, LEAST_MARGIN)
+    return sum(prices.get(name, 1.0) * slack for name, slack in slacks.items()) + lost_margin / required
+
+
+class _Common:
     """Variables, parameters, mass, strength, geometry and decay rows, and the shifted polynomial at every slot."""
 
     def __init__(self, problem: DesignProblem, slots: int, margin: ca.SX | None = None):
-        self.problem, self.slots, self.order = problem, slots, len(problem.model.state_names)
+        self.problem, self._slots = problem, slots
         self.x = ca.SX.sym("x", len(problem.variables))
         physical = problem.physical(self.x)
         n = len(problem.design_names)
         design, sizes = physical[:n], physical[n:]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
-        V, F_z, self.rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
-        self.p = ca.vertcat(data, load_limit, V, F_z, self.rate)
+        V, F_z, rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
+        self.parameters = {"data": data, "load_limit": load_limit, "speeds": V, "loads": F_z, "rates": rate}
         factors: Any = ESTIMATED
-        x = self.x[: len(problem.design_names)]
-        monomials = ca.vertcat(1, x, ca.vec(x @ x.T) / 2)
+        known = monomials(self.x[: len(problem.design_names)])
         if problem.study.required.limit_event == "simulated":
-            peaks, simulated = ca.SX.sym("peaks", monomials.numel(), len(PEAKS)), ca.SX.sym("simulated")
+            peaks, simulated = ca.SX.sym("peaks", known.numel(), len(PEAKS)), ca.SX.sym("simulated")
             estimated = problem.estimated_peaks(design, data, load_limit)
-            factors = ca.exp(simulated * (peaks.T @ monomials - ca.log(estimated)))
-            self.p = ca.vertcat(self.p, simulated, ca.vec(peaks))
-        self.mass, self.rows = problem.mass_and_rows(design, sizes, data, load_limit, factors)
-        self.decay_rows, self.excess = ca.SX(0, 1), ca.SX(0, 1)
+            factors = ca.exp(simulated * (peaks.T @ known - ca.log(estimated)))
+            self.parameters |= {"simulated": simulated, "peaks": peaks}
+        self.mass, self.strength = problem.mass_and_rows(design, sizes, data, load_limit, factors)
+        self.decay, self.excess = ca.SX(0, 1), ca.SX(0, 1)
         if problem.study.required.decay is not None:
             self.excess = ca.SX.sym("excess")
-            cuts = ca.SX.sym("cuts", monomials.numel(), CUTS)
+            cuts = ca.SX.sym("cuts", known.numel(), CUTS)
             ratio = data[problem.data_names.index("requirements.decay.ratio")]
             limit = ca.log(ratio) + np.log1p(-problem.study.solver.decay_reserve)
-            self.decay_rows = cuts.T @ monomials - limit
-            self.p = ca.vertcat(self.p, ca.vec(cuts))
+            self.decay = cuts.T @ known - limit
+            self.parameters |= {"cuts": cuts}
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
-        self.polynomials = [
-            characteristic_polynomial(problem.shifted_matrix(design, data, V[i], F_z[i]) / self.rate[i]) for i in range(slots)
-        ]
+        shifted = [problem.shifted_matrix(design, data, V[i], F_z[i]) / rate[i] for i in range(slots)]
+        self.slots = Slots([characteristic_polynomial(A) for A in shifted], rate)
 
     def numbers(
         self,
@@ -133,108 +148,57 @@ class _Slots:
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
         margin: float | None = None,
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Common parameters; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
+    ) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
+        """Parameters by block; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem
-        filled = [*points, *[points[-1]] * (self.slots - len(points))]
+        filled = [*points, *[points[-1]] * (self._slots - len(points))]
         V, F_z = np.array(filled).T
         shift = problem.study.solver.margin_reserve
         shift += problem.study.required.stability_margin if margin is None else margin
         roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + shift
-        rates = np.exp(np.log(np.abs(roots) + 1e-3).mean(axis=1))
-        p = [problem.data, [problem.load_limit], V, F_z, rates]
+        rates = np.exp(np.log(np.abs(roots) + SLOWEST_ROOT).mean(axis=1))
+        values = {"data": problem.data, "load_limit": problem.load_limit, "speeds": V, "loads": F_z, "rates": rates}
         n = len(problem.design_names)
-        if problem.study.required.limit_event == "simulated":
-            models = [peak.about_zero() for peak in peaks] or [np.zeros(1 + n + n * n)] * len(PEAKS)
-            p += [[float(bool(peaks))], *models]
-        if self.decay_rows.numel():
+        if "peaks" in self.parameters:
+            models = [peak.about_zero() for peak in peaks] or [Cut.constant(0.0, n).about_zero()] * len(PEAKS)
+            values |= {"simulated": float(bool(peaks)), "peaks": np.concatenate(models)}
+        if "cuts" in self.parameters:
+            unused = Cut.constant(NEVER, n).about_zero()
             columns = [cut.about_zero() for cut in cuts]
-            unused = np.append(NEVER, np.zeros(n + n * n))
-            p += [*columns, *[unused] * (CUTS - len(columns))]
-        return np.concatenate(p), roots, rates
+            values["cuts"] = np.concatenate([*columns, *[unused] * (CUTS - len(columns))])
+        return values, roots, rates
 
-    def box(self, design: Mapping[str, float], radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def box(self, design: Mapping[str, float], radius: float) -> Limits:
         """Scaled variables of a design and their bounds, no design variable further than `radius` from it."""
         lower, upper = self.problem.bounds()
         x0 = np.clip(self.problem.scaled(design), lower, upper)
-        free = len(self.problem.size_names)
-        around = np.append(np.full(x0.size - free, radius), np.full(free, np.inf))  # sizes of parts follow the design
-        return x0, np.maximum(lower, x0 - around), np.minimum(upper, x0 + around)
+        around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
+        return Limits(np.maximum(lower, x0 - around), np.minimum(upper, x0 + around), x0)
 
 
-class _HurwitzConditions:
-    """Lienard-Chipart conditions of all slots as rows <= 0; no variables of its own, one weight per slot."""
+class _Program:
+    """What programs share: the common parts, conditions of stability, and the blocks of their vectors."""
 
-    def __init__(self, common: _Slots):
-        weight = ca.SX.sym("weight", common.slots)
-        last = f"H{common.order - 1}"
-        conditions = [lienard_chipart(a) for a in common.polynomials]
-        self.variables, self.parameters = ca.SX(0, 1), weight
-        self.rows = ca.vertcat(
-            *(-value * (weight[i] if name == last else 1) for i, slot in enumerate(conditions) for name, value in slot.items())
-        )
-        self._per_slot = len(conditions[0])
+    stability_type: ClassVar[type[Conditions]]
+    variables: Blocks
+    rows: Blocks
 
-    def instance(self, roots: np.ndarray, rates: np.ndarray, used: int) -> Instance:
-        limits = np.zeros(self.rows.numel())
-        limits[used * self._per_slot :] = np.inf
-        nothing = np.zeros(0)
-        weights = np.array([_damping_weight(r, rate) for r, rate in zip(roots, rates, strict=True)])
-        return Instance(nothing, nothing, nothing, np.full(limits.size, -np.inf), limits, weights)
+    def __init__(self, problem: DesignProblem, slots: int, margin: ca.SX | None = None):
+        self._common = _Common(problem, slots, margin)
+        self._stability = self.stability_type(self._common.slots)
+        self.parameters = Blocks(**self._common.parameters, stability=self._stability.parameters)
 
+    def _nlp(self, f: ca.SX) -> dict[str, ca.SX]:
+        return {"x": self.variables.expression, "p": self.parameters.expression, "f": f, "g": self.rows.expression}
 
-def _damping_weight(roots: np.ndarray, rate: float) -> float:
-    """Weight of the last Hurwitz determinant, the product of -(s_i + s_j) over all pairs of roots: divided by the factors
-    that are no conjugate pairs it is the product of -2 Re(s) over the oscillating modes, in 1/s, as a margin is."""
-    i, j = np.triu_indices(len(roots), 1)
-    sums = roots[i] + roots[j]
-    conjugate = (np.abs(sums.imag) < 1e-9 * np.abs(roots[i])) & (np.abs(roots[i].imag) > 0)
-    return float(rate ** conjugate.sum() / np.prod(np.abs(sums[~conjugate]) / rate + 1e-6))
+    def _instance(self, variables: Mapping[str, Limits], values: Mapping[str, Any], conditions: ConditionNumbers) -> Instance:
+        own, met = {"excess": Limits(0.0, np.inf, 0.0), "stability": conditions.variables}, Limits(-np.inf, 0.0)
+        rows = {"strength": met, "decay": met, "stability": conditions.rows}
+        values = {**values, "stability": conditions.parameters}
+        return instance_of(self.variables, self.rows, self.parameters, {**own, **variables}, rows, values)
 
 
-class _StableFactors:
-    """Shifted polynomial = product of factors with variables b [1/s], c/rate^2, ..., r/rate >= 0 at every slot."""
-
-    def __init__(self, common: _Slots):
-        n = common.order
-        lifted = ca.SX.sym("lifted", n, common.slots)
-        equalities = []
-        for i, a in enumerate(common.polynomials):
-            pairs = [[1, lifted[2 * k, i] / common.rate[i], lifted[2 * k + 1, i]] for k in range(n // 2)]
-            single = [[1, lifted[n - 1, i]]] if n % 2 else []
-            product = reduce(_multiply, pairs + single)
-            equalities += [product[k] - a[k] for k in range(1, n + 1)]
-        self.variables, self.parameters = ca.vec(lifted), ca.SX(0, 1)
-        self.rows = ca.vertcat(*equalities)
-        self._per_slot = n
-
-    def instance(self, roots: np.ndarray, rates: np.ndarray, used: int) -> Instance:
-        factors = np.concatenate([_factors(r, rate) for r, rate in zip(roots, rates, strict=True)])
-        lower = np.where(np.arange(factors.size) < used * self._per_slot, 0.0, -np.inf)
-        equal = np.zeros(factors.size)
-        return Instance(factors, lower, np.full(factors.size, np.inf), equal, equal, np.zeros(0))
-
-
-def _multiply(p: list[Any], q: list[Any]) -> list[Any]:
-    product: list[Any] = [0] * (len(p) + len(q) - 1)
-    for i, p_i in enumerate(p):
-        for j, q_j in enumerate(q):
-            product[i + j] = product[i + j] + p_i * q_j
-    return product
-
-
-def _factors(roots: np.ndarray, rate: float) -> list[float]:
-    """[b, c/rate^2, ..., r/rate] of real factors: conjugate pairs, then neighbouring real roots; r is the fastest."""
-    real = np.abs(roots.imag) <= 1e-9 * (1 + np.abs(roots))
-    fast_to_slow = sorted(roots[real].real)
-    single = [fast_to_slow.pop(0)] if len(fast_to_slow) % 2 else []
-    pairs = [(-2 * s.real, abs(s) ** 2) for s in roots[~real] if s.imag > 0]
-    pairs += [(-(s + t), s * t) for s, t in zip(fast_to_slow[::2], fast_to_slow[1::2], strict=True)]
-    ordered = sorted(pairs, key=lambda pair: pair[1])
-    return [number for b, c in ordered for number in (b, c / rate**2)] + [-s / rate for s in single]
-
-
-class _MassProgram:
+class _MassProgram(_Program):
     """Least mass under the strength and geometry rows and the stability conditions.
 
     Parameters
@@ -244,18 +208,12 @@ class _MassProgram:
         Number of (speed, load) points it has room for.
     """
 
-    stability_type: ClassVar[type]
-
     def __init__(self, problem: DesignProblem, slots: int):
-        self._common = common = _Slots(problem, slots)
-        self._stability = stability = self.stability_type(common)
-        excess = ca.sum1(common.excess)
-        self.nlp = {
-            "x": ca.vertcat(common.x, common.excess, stability.variables),
-            "p": ca.vertcat(common.p, stability.parameters),
-            "f": common.mass + EXCESS_PRICE * excess,
-            "g": ca.vertcat(common.rows, common.decay_rows - excess, stability.rows),
-        }
+        super().__init__(problem, slots)
+        common, excess = self._common, ca.sum1(self._common.excess)
+        self.variables = Blocks(design=common.x, excess=common.excess, stability=self._stability.variables)
+        self.rows = Blocks(strength=common.strength, decay=common.decay - excess, stability=self._stability.rows)
+        self.nlp = self._nlp(common.mass + EXCESS_PRICE * excess)
 
     def instance(
         self,
@@ -267,43 +225,28 @@ class _MassProgram:
         **options: Any,
     ) -> Instance:
         """The program at `points`, started and scaled at `design`, no design variable further than `radius` from there."""
-        common = self._common
-        p, roots, rates = common.numbers(design, points, cuts, peaks)
-        x0, lower, upper = common.box(design, radius)
-        none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
-        own = Instance(
-            np.append(x0, none),
-            np.append(lower, none),
-            np.append(upper, none + np.inf),
-            np.full(rows, -np.inf),
-            np.zeros(rows),
-            p,
-        )
-        return _joined(own, self._stability.instance(roots, rates, len(points)))
-
-
-def _joined(first: Instance, second: Instance) -> Instance:
-    return Instance(*(np.concatenate([getattr(first, key), getattr(second, key)]) for key in Instance.__annotations__))
+        values, roots, rates = self._common.numbers(design, points, cuts, peaks)
+        conditions = self._stability.numbers(roots, rates, len(points))
+        return self._instance({"design": self._common.box(design, radius)}, values, conditions)
 
 
 class HurwitzProgram(_MassProgram):
     """Least mass; stability by Lienard-Chipart conditions."""
 
-    stability_type = _HurwitzConditions
+    stability_type = HurwitzConditions
 
 
 class FactorProgram(_MassProgram):
     """Least mass; stability by factors."""
 
-    stability_type = _StableFactors
+    stability_type = StableFactors
 
 
-class _ElasticProgram:
+class _ElasticProgram(_Program):
     """Least relaxation under which a design exists: strength and geometry rows and the margin may give way.
 
     The objective is the sum of the slacks: logarithmic ratios, lengths over 0.1 m, and the loss of margin over the margin
-    (or 0.1 1/s if that is larger). Which of them may move is set at each instance. The variables after those of the design
-    are the excess of the decay cuts (with a decay requirement), the slacks and the margin.
+    (or 0.1 1/s if that is larger). Which of them may move is set at each instance.
 
     Parameters
     ----------
@@ -312,27 +255,24 @@ class _ElasticProgram:
         Number of (speed, load) points it has room for.
     """
 
-    stability_type: ClassVar[type]
-
     def __init__(self, problem: DesignProblem, slots: int):
         margin = ca.SX.sym("margin")
-        self._common = common = _Slots(problem, slots, margin)
-        self._stability = stability = self.stability_type(common)
-        self._margin = required = problem.study.required.stability_margin
-        names = relaxable(problem)
-        slack, excess = ca.SX.sym("slack", len(names) - 1), common.excess
-        prices = ca.DM([1.0] * slack.numel())
-        prices[: len(problem.constraints)] = [1.0 if c.ratio else 10.0 for c in problem.constraints]
-        rows = common.rows.numel()
-        self._names = names
-        self.nlp = {
-            "x": ca.vertcat(common.x, excess, slack, margin, stability.variables),
-            "p": ca.vertcat(common.p, stability.parameters),
-            "f": ca.dot(prices, slack) + (required - margin) / max(required, 0.1) + EXCESS_PRICE * ca.sum1(excess),
-            "g": ca.vertcat(
-                common.rows - slack[:rows], common.decay_rows - ca.sum1(slack[rows:]) - ca.sum1(excess), stability.rows
-            ),
-        }
+        super().__init__(problem, slots, margin)
+        common, conditions = self._common, self._stability
+        self._required = problem.study.required.stability_margin
+        self._names = relaxable(problem)
+        slack, excess = ca.SX.sym("slack", len(self._names) - 1), ca.sum1(common.excess)
+        strength = common.strength.numel()
+        self.variables = Blocks(
+            design=common.x, excess=common.excess, slack=slack, margin=margin, stability=conditions.variables
+        )
+        self.rows = Blocks(
+            strength=common.strength - slack[:strength],
+            decay=common.decay - ca.sum1(slack[strength:]) - excess,
+            stability=conditions.rows,
+        )
+        by_name = {name: slack[i] for i, name in enumerate(self._names[:-1])}
+        self.nlp = self._nlp(price(problem, by_name, self._required - margin) + EXCESS_PRICE * excess)
 
     def instance(
         self,
@@ -344,34 +284,38 @@ class _ElasticProgram:
         **options: Any,
     ) -> Instance:
         """The program at `points`, started at `design`; the constraints named in the option `relaxed` may give way."""
-        common, problem = self._common, self._common.problem
+        problem = self._common.problem
         may_move = np.array([name in options["relaxed"] for name in self._names])
-        slack = np.zeros(len(self._names) - 1)
-        slack[: len(problem.constraints)] = np.maximum(list(problem.rows(design).values()), 0.0)
+        needed = np.zeros(len(self._names) - 1)
+        exceeded = list(problem.rows(design, _factors(problem, design, peaks)).values())
+        needed[: len(exceeded)] = np.maximum(exceeded, 0.0)
         abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
-        kept = min(self._margin, -abscissa - 2 * problem.study.solver.margin_reserve)
-        start = np.where(may_move, np.append(slack + 1e-3, kept), np.append(np.zeros(slack.size), self._margin))
-        p, roots, rates = common.numbers(design, points, cuts, peaks, margin=float(start[-1]))
-        x0, lower, upper = common.box(design, radius)
-        none, rows = np.zeros(common.excess.numel()), common.rows.numel() + common.decay_rows.numel()
-        own = Instance(
-            np.concatenate([x0, none, start]),
-            np.concatenate([lower, none, np.zeros(slack.size), [-np.inf if may_move[-1] else self._margin]]),
-            np.concatenate([upper, none + np.inf, np.where(may_move[:-1], np.inf, 0.0), [self._margin]]),
-            np.full(rows, -np.inf),
-            np.zeros(rows),
-            p,
-        )
-        return _joined(own, self._stability.instance(roots, rates, len(points)))
+        kept = min(self._required, -abscissa - 2 * problem.study.solver.margin_reserve)
+        slack, margin = np.where(may_move[:-1], needed + SLACK, 0.0), kept if may_move[-1] else self._required
+        values, roots, rates = self._common.numbers(design, points, cuts, peaks, margin=margin)
+        variables = {
+            "design": self._common.box(design, radius),
+            "slack": Limits(0.0, np.where(may_move[:-1], np.inf, 0.0), slack),
+            "margin": Limits(-np.inf if may_move[-1] else self._required, self._required, margin),
+        }
+        return self._instance(variables, values, self._stability.numbers(roots, rates, len(points)))
+
+
+def _factors(problem: DesignProblem, design: Mapping[str, float], peaks: Sequence[Cut]) -> np.ndarray:
+    """Of the limit event, from the models of its peaks; as estimated where there are none."""
+    if not peaks:
+        return ESTIMATED
+    x = problem.scaled(design)[: len(problem.design_names)]
+    return problem.factors_of(design, {name: float(np.exp(peak.at(x))) for name, peak in zip(PEAKS, peaks, strict=True)})
 
 
 class ElasticHurwitzProgram(_ElasticProgram):
     """Least relaxation; stability by Lienard-Chipart conditions."""
 
-    stability_type = _HurwitzConditions
+    stability_type = HurwitzConditions
 
 
 class ElasticFactorProgram(_ElasticProgram):
     """Least relaxation; stability by factors."""
 
-    stability_type = _StableFactors
+    stability_type = StableFactors

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..stability.screening import least_conditions, linear_decay, worst_abscissae_of
+from ..stability.screening import SPEEDS, worst_abscissae_of
 from ..study.study import Study
-from .problem import DesignProblem
+from .problem import ESTIMATED, DesignProblem
 
 __all__ = ["FeasibleRegion", "feasible_region"]
 
-
-PER_CYCLE = 64  # times in a cycle of the slowest mode: a yaw mode of four times its frequency is still a curve
+PER_CYCLE = 64
+"""Times in a cycle of the slowest mode: a yaw mode of four times its frequency is still a curve."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,8 @@ class FeasibleRegion:
     mass : ndarray
         (k, m) [kg].
     stability : ndarray
-        (k, m) least stability condition over the speeds and loads looked at, scaled; > 0 where the margin holds.
+        (k, m) over the speeds and loads looked at > 0 where the margin holds: beside its limit how far the spectral abscissa is
+        from it [1/s], elsewhere the least stability condition, scaled.
     violated : dict of str to ndarray
         Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
     design : dict
@@ -53,7 +54,11 @@ class FeasibleRegion:
 
 
 def feasible_region(
-    study: Study, design: Mapping[str, float], worst: Sequence[tuple[float, float]] = (), points: int = 101
+    study: Study,
+    design: Mapping[str, float],
+    worst: Sequence[tuple[float, float]] = (),
+    points: int = 101,
+    limit_event: Mapping[str, float] | None = None,
 ) -> FeasibleRegion:
     """Feasible region in the plane of damping and stiffness: (c_lambda, I_arm), or (c_lambda, k_lambda) for Boeing.
 
@@ -66,6 +71,9 @@ def feasible_region(
         Points of the envelope to look at besides 24 speeds at each load.
     points : int
         Grid points per axis.
+    limit_event : mapping or None
+        Peaks of the limit event of the design, as a result holds them; their ratio to the estimate is taken for the same all
+        over the plane. None: as estimated.
 
     Returns
     -------
@@ -79,16 +87,34 @@ def feasible_region(
     X, Y = np.meshgrid(x, y)
     designs = np.tile([design[name] for name in names], (X.size, 1))
     designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
-    found = problem.over_designs(designs, problem.factors(design))
+    factors = ESTIMATED
+    if limit_event and study.required.limit_event == "simulated":
+        factors = problem.factors_of(design, limit_event)
+    found = problem.over_designs(designs, factors)
     k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
     if problem.plain:
-        stability = least_conditions(study, k_psi, c_psi, worst)
+        stability = problem.screening.least_conditions(k_psi, c_psi, worst)
+        near = _beside_the_limit(stability.reshape(X.shape)).ravel()
+        abscissae = problem.screening.worst_abscissae(k_psi[near], c_psi[near], worst, SPEEDS)
+        stability[near] = -study.required.stability_margin - abscissae  # even enough for a curve between the nodes
     else:
-        stability = -study.required.stability_margin - worst_abscissae_of(study, designs, worst)
+        stability = -study.required.stability_margin - worst_abscissae_of(problem.model, study, designs, worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
     decay = study.required.decay
     if decay is not None:
         ratio = np.full(X.size, np.inf)
-        ratio[stability > 0] = linear_decay(study, k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
-        rows["decay_ratio"] = np.log(ratio / decay.ratio).reshape(X.shape)
+        ratio[stability > 0] = problem.screening.linear_decay(k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
+        rows["decay_ratio"] = np.log(np.maximum(ratio, 1e-12) / decay.ratio).reshape(X.shape)
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))
+
+
+def _beside_the_limit(values: np.ndarray) -> np.ndarray:
+    """Corners (k, m) of the cells in which values change their sign."""
+    kept = values > 0
+    corners = [kept[:-1, :-1], kept[:-1, 1:], kept[1:, :-1], kept[1:, 1:]]
+    mixed = np.any(corners, axis=0) & ~np.all(corners, axis=0)
+    beside = np.zeros(values.shape, bool)
+    for rows in (slice(None, -1), slice(1, None)):
+        for columns in (slice(None, -1), slice(1, None)):
+            beside[rows, columns] |= mixed
+    return beside

@@ -14,7 +14,6 @@ import casadi as ca
 import numpy as np
 from scipy.stats import qmc
 
-from ..stability.screening import least_conditions, linear_decay, worst_abscissae
 from .problem import DesignProblem
 from .solve import raise_if_interrupted
 
@@ -77,10 +76,10 @@ def stiffness_scan(problem: DesignProblem) -> list[ScanPoint]:
     """
     k, c, start = _reachable(problem)
     K, C = np.meshgrid(k, c, indexing="ij")
-    stable = least_conditions(problem.study, K.ravel(), C.ravel()) > 0
+    stable = problem.screening.least_conditions(K.ravel(), C.ravel()) > 0
     decay = problem.study.required.decay
     if decay is not None:
-        stable[stable] = linear_decay(problem.study, K.ravel()[stable], C.ravel()[stable]) <= decay.ratio
+        stable[stable] = problem.screening.linear_decay(K.ravel()[stable], C.ravel()[stable]) <= decay.ratio
     stable = stable.reshape(K.shape)
     layouts, points = _Layouts(problem, start), []
     for i in np.flatnonzero(stable.any(axis=1)):
@@ -107,7 +106,7 @@ def steady_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]
         return []
     k, c, start = _reachable(problem)
     K, C = np.meshgrid(k, c, indexing="ij")
-    abscissa = worst_abscissae(problem.study, K.ravel(), C.ravel()).reshape(K.shape)
+    abscissa = problem.screening.worst_abscissae(K.ravel(), C.ravel()).reshape(K.shape)
     layouts, designs = _Layouts(problem, start), []
     for i in np.argsort(abscissa.min(axis=1)):
         point = layouts.lightest(k[i], c[int(abscissa[i].argmin())])

@@ -41,8 +41,8 @@ def sensitivities(
     """
     study, points = problem.study, solution.points
     simulated: dict[str, float] = {}  # by what moves the active cuts and the peaks, times what these are worth
-    worth = [(cut, 0, m) for cut, m in zip(solution.cuts, solution.cut_multipliers, strict=True)]
-    worth += [(cut, 1 + k, w) for k, (cut, w) in enumerate(zip(solution.peaks, solution.peak_gradient, strict=True))]
+    worth = [(cut, 0, m) for cut, m in zip(solution.cuts, solution.multipliers.cuts, strict=True)]
+    worth += [(cut, 1 + k, w) for k, (cut, w) in enumerate(zip(solution.peaks, solution.gradient.peaks, strict=True))]
     for cut, row, weight in worth:
         if analysis is None or abs(weight) <= 1e-7 * solution.objective:
             continue
@@ -51,17 +51,17 @@ def sensitivities(
                 simulated[key] = simulated.get(key, 0.0) + float(weight * slope[row])
     found = [
         (name, float(value), unit_of(study, name), float(slope) + simulated.get(name, 0.0))
-        for name, value, slope in zip(problem.data_names, problem.data, solution.data_gradient, strict=True)
+        for name, value, slope in zip(problem.data_names, problem.data, solution.gradient.data, strict=True)
     ]
     for end in ("min", "max"):
         speed = getattr(study.envelope.speed, end)
-        slope = sum(d for d, point in zip(solution.point_gradient[:, 0], points, strict=True) if point[0] == speed)
+        slope = sum(d for d, point in zip(solution.gradient.points[:, 0], points, strict=True) if point[0] == speed)
         name = f"envelope.speed.{end}"
         found.append((name, speed, "m/s", float(slope) + simulated.get(name, 0.0)))
     names: Sequence[Any] = ("min", "max") if study.envelope.load_is_range else range(len(study.envelope.loads))
     for name, load in zip(names, study.envelope.loads, strict=True):
-        slope = sum(d for d, point in zip(solution.point_gradient[:, 1], points, strict=True) if point[1] == load)
-        slope += solution.load_limit_gradient if load == problem.load_limit else 0.0
+        slope = sum(d for d, point in zip(solution.gradient.points[:, 1], points, strict=True) if point[1] == load)
+        slope += solution.gradient.load_limit if load == problem.load_limit else 0.0
         single = len(study.envelope.loads) == 1
         slope += simulated.get(f"load {load}", 0.0)
         found.append(("envelope.vertical_load" + ("" if single else f".{name}"), load, "N", float(slope)))

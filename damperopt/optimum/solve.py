@@ -10,12 +10,14 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
-from ..motion.decay import DecayAnalysis, decay_analysis
-from .cuts import Cut
+from ..motion.decay import DecayAnalysis
+from ..motion.measure import PEAKS
+from .cuts import CONSTANT, Cut
+from .parameters import Instance
 from .problem import DesignProblem
-from .program import HurwitzProgram, Instance, Program
+from .program import HurwitzProgram, Program
 
-__all__ = ["LocalSolution", "NlpSolver", "raise_if_interrupted"]
+__all__ = ["Gradient", "LocalSolution", "Multipliers", "NlpSolver", "raise_if_interrupted"]
 
 T = TypeVar("T")
 
@@ -32,67 +34,96 @@ _OPTIONS: dict[str, Any] = {
 }
 
 
+FEWEST_SLOTS = 4
+
+VIOLATION = 1e-6
+"""Excess of a row up to which a solution that IPOPT calls one is taken for one."""
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """Of the constraints of a solution.
+
+    Attributes
+    ----------
+    rows : ndarray
+        Of the strength and geometry rows, >= 0.
+    bounds : ndarray
+        Of the bounds of the scaled variables, positive at an upper bound.
+    cuts : ndarray
+        (m,) of the decay cuts.
+    """
+
+    rows: np.ndarray
+    bounds: np.ndarray
+    cuts: np.ndarray
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """Derivative of the optimal objective, by the envelope theorem that of the Lagrangian.
+
+    Attributes
+    ----------
+    data : ndarray
+        With respect to the study's numbers.
+    load_limit : float
+        To the load of the limit event.
+    points : ndarray
+        (m, 2) to the speeds and loads of the stability points.
+    peaks : ndarray
+        (k,) to the logarithm of each simulated peak.
+    """
+
+    data: np.ndarray
+    load_limit: float
+    points: np.ndarray
+    peaks: np.ndarray
+
+
 @dataclass(frozen=True)
 class LocalSolution:
     """A local solution of the program, or the point where IPOPT gave up.
 
     Attributes
     ----------
+    form : str
+        Name of the program, and
+    points, cuts, peaks : tuple
+        what it was given: stability points (speed, load), decay cuts, and models of simulated peaks.
     converged : bool
     status : str
         IPOPT's word.
     design : dict
         Design variables [SI].
-    objective : float
-        Mass [kg]; the price of the relaxation for the elastic program.
-    extra : ndarray
-        Variables of the program beyond those of the design.
     x : ndarray
         Scaled variables.
-    row_multipliers, bound_multipliers : ndarray
-        Of the strength and geometry rows (>= 0) and of the bounds of the scaled variables (positive at an upper bound).
-    cuts : tuple of Cut
-        Decay cuts of the solution.
-    cut_multipliers : ndarray
-        (m,) of the decay cuts.
-    peaks : tuple of Cut
-        Models of simulated peaks, and
-    peak_gradient : ndarray
-        (k,) derivative of the optimal objective with respect to the logarithm of each.
-    data_gradient : ndarray
-        Derivative of the optimal objective with respect to the study's numbers, by the envelope theorem (its Lagrangian's).
-    load_limit_gradient : float
-        The same with respect to the load of the limit event.
-    point_gradient : ndarray
-        (m, 2) the same with respect to the speeds and loads of `points`.
+    objective : float
+        Mass [kg]; the price of the relaxation for the elastic program.
+    excess : float
+        By how much ln(decay ratio) exceeds the cuts.
+    margin : float or None
+        What is left of the margin [1/s], of an elastic program.
+    multipliers : Multipliers
+    gradient : Gradient
     kkt_residual : float
         Largest of |grad L|, complementarity and violation, recomputed from the derivatives (not IPOPT's own figure).
-    points : tuple of (speed, load)
-        Stability points of the solution.
-    form : str
-        Name of the program.
-    iterations : int
     """
 
+    form: str
+    points: tuple[tuple[float, float], ...]
+    cuts: tuple[Cut, ...]
+    peaks: tuple[Cut, ...]
     converged: bool
     status: str
     design: dict[str, float]
-    objective: float
-    extra: np.ndarray
     x: np.ndarray
-    row_multipliers: np.ndarray
-    bound_multipliers: np.ndarray
-    cuts: tuple[Cut, ...]
-    cut_multipliers: np.ndarray
-    peaks: tuple[Cut, ...]
-    peak_gradient: np.ndarray
-    data_gradient: np.ndarray
-    load_limit_gradient: float
-    point_gradient: np.ndarray
+    objective: float
+    excess: float
+    margin: float | None
+    multipliers: Multipliers
+    gradient: Gradient
     kkt_residual: float
-    points: tuple[tuple[float, float], ...]
-    form: str
-    iterations: int
 
 
 class NlpSolver:
@@ -111,7 +142,14 @@ class NlpSolver:
     @cached_property
     def decay(self) -> DecayAnalysis:
         """Simulations of the study's gear, for studies with a decay requirement."""
-        return decay_analysis(self.problem.study)
+        return DecayAnalysis(self.problem.study, self.problem.model)
+
+    def simulated_factors(self, design: Mapping[str, float]) -> np.ndarray | None:
+        """Simulated over estimated peaks of the limit event of a design; None where a torque is the limit event."""
+        if self.problem.study.required.limit_event != "simulated":
+            return None
+        peaks, _ = self.decay.largest_peaks(design)
+        return self.problem.factors_of(design, dict(zip(PEAKS, peaks.tolist(), strict=True)))
 
     def remembered(self, design: Mapping[str, float], work: Callable[[], T]) -> T:
         """What `work` returns; not done again for a design that it was done for, to four digits."""
@@ -155,37 +193,33 @@ class NlpSolver:
         stats = built.solver.stats()
         raise_if_interrupted(stats)
         x, g, lam_g, lam_x = (result[key].full().ravel() for key in ("x", "g", "lam_g", "lam_x"))
-        rows = len(self.problem.constraints)
-        variables, data = len(self.problem.variables), len(self.problem.data)
-        # parameters: data, load limit, speeds, loads and rates of the slots; with simulated peaks a switch and their models,
-        # of which the value comes first (see Program)
-        n = len(self.problem.design_names)
+        variables, rows = built.program.variables, built.program.rows
         by_parameter = built.parameter_gradient(x, it.p, lam_g).full().ravel()
         violation = max(np.max(g - it.ubg), np.max(it.lbg - g), 0.0)
+        scaled, margin = variables.part(x, "design"), variables.part(x, "margin")
         return LocalSolution(
-            converged=bool(stats["success"]) and violation <= 1e-6,
-            status=stats["return_status"],
-            design=self.problem.unscaled(x[:variables]),
-            objective=float(result["f"]),
-            extra=x[variables:],
-            x=x[:variables],
-            row_multipliers=lam_g[:rows],
-            bound_multipliers=lam_x[:variables],
-            cuts=tuple(cuts),
-            cut_multipliers=lam_g[rows : rows + len(cuts)],
-            peaks=tuple(peaks),
-            peak_gradient=by_parameter[data + 1 + 3 * built.slots + 1 :][:: 1 + n + n * n][: len(peaks)],
-            data_gradient=by_parameter[:data],
-            load_limit_gradient=float(by_parameter[data]),
-            point_gradient=by_parameter[data + 1 : data + 1 + 2 * built.slots].reshape(2, -1)[:, : len(points)].T,
-            kkt_residual=_kkt_residual(built, it, x, g, lam_g, lam_x),
-            points=tuple(points),
             form=form.__name__,
-            iterations=int(stats["iter_count"]),
+            points=tuple(points),
+            cuts=tuple(cuts),
+            peaks=tuple(peaks),
+            converged=bool(stats["success"]) and violation <= VIOLATION,
+            status=stats["return_status"],
+            design=self.problem.unscaled(scaled.tolist()),
+            x=scaled,
+            objective=float(result["f"]),
+            excess=float(variables.part(x, "excess").sum()),
+            margin=float(margin[0]) if margin.size else None,
+            multipliers=Multipliers(
+                rows=rows.part(lam_g, "strength"),
+                bounds=variables.part(lam_x, "design"),
+                cuts=rows.part(lam_g, "decay")[: len(cuts)],
+            ),
+            gradient=_gradient(built.program, by_parameter, len(points), len(peaks)),
+            kkt_residual=_kkt_residual(built, it, x, g, lam_g, lam_x),
         )
 
     def _program(self, form: type[Program], points: int) -> _Built:
-        slots = max(4, 1 << (points - 1).bit_length())
+        slots = max(FEWEST_SLOTS, 1 << (points - 1).bit_length())
         if (form, slots) not in self._built:
             program = form(self.problem, slots)
             nlp = program.nlp
@@ -197,7 +231,6 @@ class NlpSolver:
                 ca.nlpsol("design", "ipopt", nlp, options),
                 ca.Function("stationarity", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["x"])]),
                 ca.Function("parameter_gradient", [*inputs, multipliers], [ca.gradient(lagrangian, nlp["p"])]),
-                slots,
             )
         return self._built[form, slots]
 
@@ -214,7 +247,19 @@ class _Built:
     solver: ca.Function
     stationarity: ca.Function
     parameter_gradient: ca.Function
-    slots: int
+
+
+def _gradient(program: Program, by_parameter: np.ndarray, points: int, peaks: int) -> Gradient:
+    def part(name: str) -> np.ndarray:
+        return program.parameters.part(by_parameter, name)
+
+    coefficients = part("peaks").reshape(-1, len(PEAKS), order="F") if peaks else np.zeros((1, 0))
+    return Gradient(
+        data=part("data"),
+        load_limit=float(part("load_limit")[0]),
+        points=np.column_stack([part("speeds"), part("loads")])[:points],
+        peaks=coefficients[CONSTANT],
+    )
 
 
 def _kkt_residual(built: _Built, it: Instance, x: np.ndarray, g: np.ndarray, lam_g: np.ndarray, lam_x: np.ndarray) -> float:
@@ -224,6 +269,6 @@ def _kkt_residual(built: _Built, it: Instance, x: np.ndarray, g: np.ndarray, lam
     slack = np.concatenate([np.minimum(it.ubg - g, g - it.lbg), np.minimum(it.ubx - x, x - it.lbx)[free]])
     multipliers = np.concatenate([lam_g, lam_x[free]])
     limited = np.isfinite(slack)
-    # rows are logarithmic ratios or metres: one that is met by 1 is met; a limit of many kilometres would magnify a multiplier's rounding
+    # rows are logarithmic ratios or metres; the slack of a far limit, in kilometres, would magnify a multiplier's rounding
     complementarity = np.abs(multipliers[limited] * np.minimum(slack[limited], 1.0))
     return float(max(np.abs(stationarity).max(), complementarity.max(initial=0.0), (-slack[limited]).max(initial=0.0)))

@@ -1,8 +1,9 @@
-"""Files of a run: what each command puts into its folder."""
+"""Which figures a design has: what is computed for each, and what draws it; and the files that hold them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,81 +11,87 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
-from ..motion.decay import decay_analysis
+from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
+from ..motion.trajectory import Trajectory
+from ..optimum.region import FeasibleRegion, feasible_region
+from ..quantities.shown import written
 from ..results import DesignResult
-from ..stability.linear import linear_gear
+from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
-from .folder import write_chart, write_chart_json, write_modes
+from .tables import write_chart, write_chart_json, write_modes
 
-__all__ = ["design_chart", "design_figures", "draw_modes", "write_chart_files", "write_design"]
+__all__ = ["Answer", "DesignFigure", "design_chart", "draw_modes", "figures_of", "write_chart_files", "write_design"]
+
+SPEEDS = 400
+"""Speeds of a table and a figure of modes."""
 
 
-def write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
-    """Result, modes and figures of a design.
+@dataclass(frozen=True)
+class Answer:
+    """A design with the study that it answers, and the linear model that both are looked at with; the model is built once."""
+
+    study: Study
+    result: DesignResult
+    model: LinearModel
+
+    @classmethod
+    def of(cls, study: Study, result: DesignResult) -> Answer:
+        """The answer of a result that holds a design."""
+        return cls(study, result, LinearModel(study))
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """(m,) of the envelope [m/s]."""
+        return np.unique(np.linspace(self.study.envelope.speed.min, self.study.envelope.speed.max, SPEEDS))
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """Speed [m/s] and load [N] of the largest spectral abscissa."""
+        assert self.result.stability is not None
+        return self.result.stability.speed, self.result.stability.load
+
+
+@dataclass(frozen=True)
+class DesignFigure:
+    """A figure of a design.
+
+    Attributes
+    ----------
+    name : str
+        Of its file.
+    title, text : str
+        Heading and caption in a report.
+    compute : callable
+        Answer -> what is drawn.
+    draw : callable
+        (answer, what was computed) -> matplotlib Figure; computes nothing.
+    """
+
+    name: str
+    title: str
+    text: str
+    compute: Callable[[Answer], Any]
+    draw: Callable[[Answer, Any], Any]
+
+    def drawn(self, answer: Answer) -> Any:
+        """Computed and drawn."""
+        return self.draw(answer, self.compute(answer))
+
+
+def figures_of(result: DesignResult) -> tuple[DesignFigure, ...]:
+    """Figures that a result has; none without a design.
 
     Parameters
     ----------
-    place : Path
-        Folder.
-    study : Study
-    result : DesignResult
-    figures : bool
-    """
-    (place / "result.json").write_text(result.to_json(), encoding="utf-8")
-    worst = result.stability
-    if worst is None:
-        return
-    low, high = study.envelope.speed.min, study.envelope.speed.max
-    grid = np.unique(np.linspace(low, high, 400))
-    after = linear_gear(study, result.design)
-    tables = [track_modes(after, grid, load) for load in study.envelope.loads]
-    write_modes(place / "modes.csv", tables)
-    if figures:
-        from ..figures import style as plots  # matplotlib takes longer to import than a design takes to find
-
-        for name, draw in design_figures(study, result).items():
-            plots.save(draw(), place, name)
-
-
-def design_figures(study: Study, result: DesignResult) -> dict[str, Callable[[], Any]]:
-    """What draws each figure of a design, by name; empty without a design.
-
-    Parameters
-    ----------
-    study : Study
     result : DesignResult
     """
-    from ..figures import chart as chart_plot
-    from ..figures import style as plots
-    from ..figures.linkage import linkage
-    from ..optimum.region import feasible_region
-
-    worst = result.stability
-    if worst is None:
-        return {}
-
-    def modes() -> Any:
-        grid = np.unique(np.linspace(study.envelope.speed.min, study.envelope.speed.max, 400))
-        before, after = (
-            track_modes(gear, grid, worst.load) for gear in (linear_gear(study), linear_gear(study, result.design))
-        )
-        return plots.modes_before_after(before, after, result.stability_margin)
-
-    found: dict[str, Callable[[], Any]] = {
-        "linkage": lambda: linkage(study.damper, result.design),
-        "mass": lambda: plots.mass_by_part(result),
-        "modes": modes,
-        "chart": lambda: chart_plot.chart(
-            design_chart(study, result, result.stability_margin), neutral=design_chart(study, result, 0.0)
-        ),
-        "region": lambda: plots.region(feasible_region(study, result.design, [(worst.speed, worst.load)])),
-        "tornado": lambda: plots.tornado(result),
-    }
-    if result.decay is not None:
-        found["decay"] = lambda: _decay_figure(study, result)
-    return found
+    if result.stability is None or result.mass is None:
+        return ()
+    absent = {"decay"} if result.decay is None else set()
+    absent |= set() if any(s.value != 0 for s in result.sensitivities) else {"tornado"}
+    return tuple(figure for figure in _FIGURES if figure.name not in absent)
 
 
 def design_chart(study: Study, result: DesignResult, margin: float) -> StabilityChart:
@@ -103,7 +110,7 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     StabilityChart
     """
     assert result.stability is not None
-    damping, spring = study.variable_names[0], study.damper.SPRING
+    damping, spring = study.variable_names[0], study.damper.SPRING or study.variable_names[1]
     c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
@@ -118,19 +125,147 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     )
 
 
-def _decay_figure(study: Study, result: DesignResult) -> Any:
-    from ..figures import style as plots
+# what each figure shows
 
-    required, check = study.required.decay, result.decay
+
+def _modes(answer: Answer) -> tuple[ModeTable, ModeTable]:
+    load = answer.worst[1]
+    before, after = (answer.model.at(design) for design in (answer.study.start, answer.result.design))
+    return track_modes(before, answer.speeds, load), track_modes(after, answer.speeds, load)
+
+
+def _charts(answer: Answer) -> tuple[StabilityChart, StabilityChart | None]:
+    margin = answer.result.stability_margin
+    neutral = design_chart(answer.study, answer.result, 0.0) if margin > 0 else None
+    return design_chart(answer.study, answer.result, margin), neutral
+
+
+def _region(answer: Answer) -> FeasibleRegion:
+    return feasible_region(answer.study, answer.result.design, [answer.worst], limit_event=answer.result.limit_event)
+
+
+def _decay(answer: Answer) -> tuple[Trajectory, np.ndarray, np.ndarray]:
+    """The worst motion, and the decay ratio over speed."""
+    study, design = answer.study, answer.result.design
+    required, check = study.required.decay, answer.result.decay
     assert required is not None
     assert check is not None
-    analysis = decay_analysis(study)
+    analysis = DecayAnalysis(study)
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = np.unique(np.append(np.geomspace(low, high, 40), check.speed))
-    ratios = [analysis.at(result.design, float(speed), check.load).ratio for speed in speeds]
-    duration = 1.8 * analysis.at(result.design, check.speed, check.load).time
-    motion = Simulator(study, result.design, "cvodes")(check.speed, check.load, required.disturbance, duration)
-    return plots.decay(motion, check, speeds, np.array(ratios))
+    ratios = [analysis.at(design, float(speed), check.load).ratio for speed in speeds]
+    duration = 1.8 * analysis.at(design, check.speed, check.load).time
+    motion = Simulator(study, design, "cvodes")(check.speed, check.load, required.disturbance, duration)
+    return motion, speeds, np.array(ratios)
+
+
+# what draws it; matplotlib takes longer to import than a design takes to find, so it comes with the first figure
+
+
+def _draw_linkage(answer: Answer, _: None) -> Any:
+    from ..figures.linkage import linkage
+
+    return linkage(answer.study.damper, answer.result.design)
+
+
+def _draw_mass(answer: Answer, _: None) -> Any:
+    from .. import figures
+
+    return figures.mass_by_part(answer.result)
+
+
+def _draw_modes(answer: Answer, tables: tuple[ModeTable, ModeTable]) -> Any:
+    from .. import figures
+
+    return figures.modes_before_after(*tables, answer.result.stability_margin)
+
+
+def _draw_chart(answer: Answer, charts: tuple[StabilityChart, StabilityChart | None]) -> Any:
+    from ..figures.chart import chart as draw
+
+    return draw(charts[0], neutral=charts[1])
+
+
+def _draw_region(answer: Answer, region: FeasibleRegion) -> Any:
+    from .. import figures
+
+    return figures.region(region)
+
+
+def _draw_tornado(answer: Answer, _: None) -> Any:
+    from .. import figures
+
+    return figures.tornado(answer.result)
+
+
+def _draw_decay(answer: Answer, shown: tuple[Trajectory, np.ndarray, np.ndarray]) -> Any:
+    from .. import figures
+
+    motion, speeds, ratios = shown
+    return figures.decay(motion, answer.result.decay, speeds, ratios)
+
+
+def _nothing(answer: Answer) -> None:
+    """The result holds all that is drawn."""
+
+
+_FIGURES = (
+    DesignFigure("linkage", "The linkage, to scale", "Side and top view of the parts at rest.", _nothing, _draw_linkage),
+    DesignFigure("mass", "Mass by part", "Fittings included.", _nothing, _draw_mass),
+    DesignFigure(
+        "modes",
+        "Modes over speed",
+        "Decay rate and frequency of each mode, before (the start) and after; the margin is dashed.",
+        _modes,
+        _draw_modes,
+    ),
+    DesignFigure(
+        "chart",
+        "Stability chart",
+        "Where the margin is kept over damping and spring, at three speeds; the star is the design.",
+        _charts,
+        _draw_chart,
+    ),
+    DesignFigure(
+        "region",
+        "What bounds the design",
+        "Limits and lines of equal mass in the same plane, at the worst speed.",
+        _region,
+        _draw_region,
+    ),
+    DesignFigure("decay", "Decay", "The worst motion, and the amplitude that is left over speed.", _decay, _draw_decay),
+    DesignFigure(
+        "tornado",
+        "What the mass depends on",
+        "First derivatives at the optimum, from its multipliers.",
+        _nothing,
+        _draw_tornado,
+    ),
+)
+
+
+# files: what is known is written before anything is drawn, and a figure that fails costs nothing but itself
+
+
+def write_design(place: Path, study: Study, result: DesignResult, figures: bool) -> None:
+    """Result, modes and figures of a design.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    study : Study
+    result : DesignResult
+    figures : bool
+    """
+    (place / "result.json").write_text(result.to_json(), encoding="utf-8")
+    if result.stability is None:
+        return
+    answer = Answer.of(study, result)
+    after = answer.model.at(result.design)
+    write_modes(place / "modes.csv", [track_modes(after, answer.speeds, load) for load in study.envelope.loads])
+    if figures:
+        _save({figure.name: _drawing(figure, answer) for figure in figures_of(result)}, place)
 
 
 def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
@@ -144,13 +279,8 @@ def draw_modes(place: Path, tables: list[ModeTable], margin: float) -> None:
     margin : float
         [1/s]
     """
-    from ..figures import style as plots
-
-    for table in tables:
-        suffix = "" if len(tables) == 1 else f"-{table.load / 1e3:g}kN"
-        plots.save(
-            plots.modes_over_speed(table, margin, f"Modes over speed at {table.load / 1e3:g} kN"), place, f"modes{suffix}"
-        )
+    several = len(tables) > 1
+    _save({f"modes-{table.load / 1e3:g}kN" if several else "modes": _drawing_of(table, margin) for table in tables}, place)
 
 
 def write_chart_files(
@@ -167,11 +297,33 @@ def write_chart_files(
     neutral : StabilityChart or None
         The same without margin, in the figure only.
     """
-    from ..figures import style as plots
-    from ..figures.chart import chart as draw
+
+    def drawn() -> Any:
+        from ..figures.chart import chart as draw
+
+        return draw(record, filled, neutral=neutral)
 
     write_chart(place / "chart.csv", record)
     write_chart_json(place / "chart.json", record)
     if filled is not None:
         np.savez_compressed(place / "map.npz", x=filled.x, y=filled.y, values=filled.values, quantity=np.array(filled.quantity))
-    plots.save(draw(record, filled, neutral=neutral), place, "chart")
+    _save({"chart": drawn}, place)
+
+
+def _drawing(figure: DesignFigure, answer: Answer) -> Callable[[], Any]:
+    return lambda: figure.drawn(answer)
+
+
+def _drawing_of(table: ModeTable, margin: float) -> Callable[[], Any]:
+    def drawn() -> Any:
+        from .. import figures
+
+        return figures.modes_over_speed(table, margin, f"Modes over speed at {written(load=table.load)}")
+
+    return drawn
+
+
+def _save(drawings: dict[str, Callable[[], Any]], place: Path) -> None:
+    from .. import figures
+
+    figures.save_each(drawings, place)

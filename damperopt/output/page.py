@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import base64
+import tempfile
 from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -12,27 +12,12 @@ import yaml
 
 from ..errors import ConfigError
 from ..results import DesignResult, load_result
+from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
-from . import words
-from .gallery import design_figures
+from . import facts, words
+from .gallery import Answer, DesignFigure, figures_of
 
 __all__ = ["report_of", "write_report"]
-
-CAPTIONS = {
-    "linkage": ("The linkage, to scale", "Side and top view of the parts at rest."),
-    "mass": ("Mass by part", "Fittings included."),
-    "modes": (
-        "Modes over speed",
-        "Decay rate and frequency of each mode, before (the start) and after; the margin is dashed.",
-    ),
-    "chart": (
-        "Stability chart",
-        "Where the margin is kept over damping and spring, at three speeds; the star is the design.",
-    ),
-    "region": ("What bounds the design", "Limits and lines of equal mass in the same plane, at the worst speed."),
-    "decay": ("Decay", "The worst motion, and the amplitude that is left over speed."),
-    "tornado": ("What the mass depends on", "First derivatives at the optimum, from its multipliers."),
-}
 
 ASSUMPTIONS = (
     "Rigid airframe, constant vertical load, straight rolling at constant speed, one wheel.",
@@ -63,23 +48,61 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
     import jinja2
 
     best = results[0]
-    try:
-        study = Study.model_validate(best.config)
-    except ValueError:
-        raise ConfigError(f"{best.study}: the result does not hold its study; allowed: a result.json of 'optimise'") from None
+    study = _study_of(best)
+    answer = Answer.of(study, best) if best.stability is not None else None
     template = Path(__file__).with_name("report.html").read_text(encoding="utf-8")
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["input_words"] = words.input_words
     return environment.from_string(template).render(
         result=best,
         results=results,
         words=words,
         asked=words.asked(study),
+        covers=words.covers(study),
         design=words.design_rows(study, best),
         constraints=words.constraint_rows(best),
-        figures=[(name, *CAPTIONS[name], _embedded(name, draw, folder)) for name, draw in design_figures(study, best).items()],
+        loads=words.load_rows(study, best),
+        sizes=words.size_rows(facts.sizes(study, best)) if answer else [],
+        damping=words.damping_rows(facts.least_damping(_modes(answer))) if answer else [],
+        beyond=words.beyond(study, facts.next_critical_speed(study, answer.model.at(best.design))) if answer else "",
+        figures=[(figure, _embedded(figure, answer, folder)) for figure in figures_of(best)] if answer else [],
         assumptions=ASSUMPTIONS,
         config=yaml.safe_dump(_without_nothing(best.config), sort_keys=False, allow_unicode=True),
     )
+
+
+def _study_of(result: DesignResult) -> Study:
+    """The study that a result answers; refused where the two do not belong together."""
+    try:
+        study = Study.model_validate(_without_nothing(result.config))  # version 0.1 wrote empty keys of all layouts
+    except ValueError:
+        raise ConfigError(f"{result.study}: the result does not hold its study; allowed: a result.json of 'optimise'") from None
+    pairs: list[tuple[str, Any, Any]] = [
+        ("study", result.study, study.name),
+        ("topology", result.topology, study.damper.topology),
+        ("geometry", result.geometry, study.damper.geometry),
+        ("material", result.material, study.material.name),
+        ("stability_margin", result.stability_margin, study.required.stability_margin),
+    ]
+    if result.design:
+        pairs.append(("design", sorted(result.design), sorted(study.start)))
+    if result.mass is not None:
+        pairs.append(("decay", result.decay is not None, study.required.decay is not None))
+    if result.certificate is not None:
+        pairs.append(("certificate.speed", result.certificate.speed, (study.envelope.speed.min, study.envelope.speed.max)))
+        pairs.append(("certificate.loads", result.certificate.loads, tuple(study.envelope.loads)))
+    for key, found, wanted in pairs:
+        if found != wanted:
+            raise ConfigError(
+                f"result.json: {key}: found {str(found)[:80]}; allowed: {str(wanted)[:80]}, as its own study says "
+                "(the file was changed after 'optimise' wrote it)"
+            )
+    return study
+
+
+def _modes(answer: Answer) -> list[ModeTable]:
+    gear = answer.model.at(answer.result.design)
+    return [track_modes(gear, answer.speeds, load) for load in answer.study.envelope.loads]
 
 
 def write_report(folder: str | Path) -> Path:
@@ -101,9 +124,9 @@ def write_report(folder: str | Path) -> Path:
         If the folder holds no result.
     """
     folder = Path(folder)
-    single = folder / "result.json"
-    files = [single] if single.is_file() else sorted(folder.glob("[0-9]*/result.json"))
-    if not files:
+    single = folder / "result.json"  # of a ranking the best, beside the folders of all
+    files = sorted(folder.glob("[0-9]*/result.json")) or [single]
+    if not files[0].is_file():
         raise ConfigError(f"{folder}: holds no result.json; allowed: a folder of 'damperopt optimise'")
     text = report_of([load_result(file) for file in files], files[0].parent)
     page = folder / "report.html"
@@ -113,19 +136,19 @@ def write_report(folder: str | Path) -> Path:
     return page
 
 
-def _embedded(name: str, draw: Any, folder: Path | None) -> str:
-    """A figure as a data address."""
-    stored = folder / f"{name}.svg" if folder else None
+def _embedded(figure: DesignFigure, answer: Answer, folder: Path | None) -> str:
+    """A figure as a data address; empty where it cannot be drawn."""
+    stored = folder / f"{figure.name}.svg" if folder else None
     if stored is not None and stored.is_file():
-        svg = stored.read_text(encoding="utf-8")
+        svg = stored.read_bytes()
     else:
-        import matplotlib.pyplot as plt
+        from ..figures import save_each
 
-        buffer, figure = StringIO(), draw()
-        figure.savefig(buffer, format="svg", metadata={"Date": None})
-        plt.close(figure)
-        svg = buffer.getvalue()
-    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
+        with tempfile.TemporaryDirectory(prefix="damperopt-") as place:
+            if save_each({figure.name: lambda: figure.drawn(answer)}, Path(place)):
+                return ""
+            svg = (Path(place) / f"{figure.name}.svg").read_bytes()
+    return "data:image/svg+xml;base64," + base64.b64encode(svg).decode()
 
 
 def _without_nothing(block: Any) -> Any:

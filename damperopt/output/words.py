@@ -2,29 +2,58 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..quantities.record import LoadRange
-from ..results import UNITS, DesignResult
+from ..quantities.shown import as_written, shown
+from ..quantities.shown import scale as scale_of
+from ..results import DesignResult
+from ..stability.critical import CriticalSpeed
+from ..study.components import unit_of_name
 from ..study.study import Study
+from .facts import BEYOND, LeastDamping, Size, damper_speed
 
-__all__ = ["Line", "answer", "asked", "certificate", "constraint_rows", "decided_by", "design_rows", "verification"]
+__all__ = [
+    "Line",
+    "answer",
+    "asked",
+    "beyond",
+    "certificate",
+    "constraint_rows",
+    "covers",
+    "damping_rows",
+    "decided_by",
+    "design_rows",
+    "input_words",
+    "layout_words",
+    "load_rows",
+    "number",
+    "place",
+    "size_rows",
+    "verification",
+]
 
-MEANINGS = {
-    "c_lambda": "damping coefficient of the damper",
-    "k_lambda": "stiffness of the damper's spring",
-    "I_arm": "second moment of area of the bending arm",
-    "L": "length of the torque links",
-    "gamma": "angle of the links from the strut axis",
-    "b": "side distance of arm or damper",
+DERIVED = {
     "rod_diameter": "diameter of the damper's rod",
     "torsional_stiffness": "stiffness about the strut axis",
     "torsional_damping": "damping about the strut axis",
 }
-LAYOUTS = {"boeing": "Boeing (damper and spring at the apex)", "utas": "UTAS (bending arm and damper)", "arreaza": "new design"}
+"""What follows from a whole design; what a component chooses, it declares with its meaning."""
+
 KINDS = {"strength": "strength", "geometry": "geometry", "decay": "decay", "stability": "stability margin", "bound": "bounds"}
-SHOWN = {"m": ("mm", 1e3), "m^4": ("mm⁴", 1e12), "rad": ("deg", 57.29577951308232), "Pa": ("MPa", 1e-6), "N/m": ("kN/m", 1e-3)}
+PEAKS = {
+    "linkage_torque": "torque about the strut axis",
+    "yaw_angle": "yaw angle",
+    "damper_stroke": "damper stroke to one side",
+    "damper_force": "damper force",
+    "spring_force": "force at the tip of spring or arm",
+}
+"""What the peaks of the limit event are called."""
+
+NAMES = {"lower_lug_height": "height of the lower torque-link hinge above the axle"}
+"""Keys that do not say what they are."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +64,6 @@ class Line:
     strong: bool = False
 
 
-def _number(value: float, unit: str) -> tuple[str, str]:
-    """Value and unit as engineers write them."""
-    shown, factor = SHOWN.get(unit, (unit, 1.0))
-    return f"{value * factor:,.5g}".replace(",", " ") if abs(value * factor) < 1e5 else f"{value * factor:.4g}", shown
-
-
 def asked(study: Study) -> list[str]:
     """What was asked, a sentence each.
 
@@ -48,13 +71,13 @@ def asked(study: Study) -> list[str]:
     ----------
     study : Study
     """
-    required, speed = study.required, study.envelope.speed
-    loads = _loads(study.envelope.loads, isinstance(study.envelope.vertical_load, LoadRange))
+    required, envelope = study.required, study.envelope
+    speeds = _range((envelope.speed.min, envelope.speed.max), "m/s", True)
+    loads = _range(envelope.loads, "N", isinstance(envelope.vertical_load, LoadRange))
     found = [
-        f"The lightest {LAYOUTS[study.damper.topology]} in {study.material.name}, geometry {study.damper.geometry}, "
-        f"order {study.gear.order}.",
-        f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speed.min:g} to "
-        f"{speed.max:g} m/s, at {loads} kN.",
+        f"The lightest {study.damper.topology} layout in {study.material.name}, geometry {study.damper.geometry}. "
+        f"{study.damper.topology}: {layout_words(study)}",
+        f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speeds}, at {loads}.",
     ]
     if required.decay is not None:
         found.append(
@@ -64,16 +87,39 @@ def asked(study: Study) -> list[str]:
     return found
 
 
-def _loads(loads: Sequence[float], ends: bool) -> str:
-    """Loads in kN, or the ends of their range."""
-    return (" to " if ends else ", ").join(f"{load / 1e3:g}" for load in loads)
+def _range(values: Sequence[float], unit: str, ends: bool) -> str:
+    """Numbers in the unit in which they were asked, or the ends of their range."""
+    texts, name = as_written(values, unit)
+    return f"{(' to ' if ends else ', ').join(texts)} {name}"
+
+
+def place(speed: float | None, load: float | None) -> str:
+    """A speed and a load."""
+    found = [f"{speed:.4g} m/s"] if speed is not None else []
+    return ", ".join(found + ([] if load is None else [" ".join(shown(load, "N"))]))
+
+
+def number(value: float, unit: str) -> str:
+    """A number with its unit."""
+    return " ".join(shown(value, unit)).strip()
+
+
+def input_words(key: str) -> str:
+    """Key path of an input, with what it means where the key does not say it."""
+    words = NAMES.get(key.rpartition(".")[2])
+    return key if words is None else f"{key} ({words})"
+
+
+def layout_words(study: Study) -> str:
+    """What the layout of a study is, as its kind says it."""
+    return (inspect.getdoc(study.damper.LAYOUT) or "").partition("\n")[0]
 
 
 def answer(result: DesignResult) -> str:
     """The answer in one sentence."""
     if result.mass is None:
         return f"No design: {result.message}"
-    return f"{result.mass.total:.3f} kg: {LAYOUTS[result.topology]} in {result.material}."
+    return f"{result.mass.total:.3f} kg: {result.topology} layout in {result.material}."
 
 
 def design_rows(study: Study, result: DesignResult) -> list[Line]:
@@ -84,11 +130,11 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     study : Study
     result : DesignResult
     """
-    lines = []
+    lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.damper.VARIABLES}
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
-        lines.append(Line((MEANINGS.get(name, name), name, *_number(value, UNITS[name]), bounds), name in result.design))
+        lines.append(Line((meanings.get(name) or name, name, *shown(value, unit_of_name(name)), bounds), bool(bounds)))
     return lines
 
 
@@ -103,13 +149,10 @@ def constraint_rows(result: DesignResult) -> list[Line]:
     """Each requirement: name, value, limit, and what its limit costs."""
     lines = []
     for c in result.constraints:
-        value, unit = _number(c.value, c.unit)
-        limit, _ = _number(c.limit, c.unit)
-        factor = SHOWN.get(c.unit, ("", 1.0))[1]
-        price = f"{c.shadow_price / factor:+.3g} kg per {unit if unit != '1' else 'unit'}" if c.active else ""
-        lines.append(
-            Line((c.name.replace("_", " "), value, f"{c.sense} {limit}", unit if unit != "1" else "", price), c.active)
-        )
+        value, unit = shown(c.value, c.unit)
+        limit, _ = shown(c.limit, c.unit)
+        price = f"{c.shadow_price / scale_of(c.unit)[1]:+.3g} kg per {unit or 'unit'}" if c.active else ""
+        lines.append(Line((c.name.replace("_", " "), value, f"{c.sense} {limit}", unit, price), c.active))
     return lines
 
 
@@ -117,8 +160,56 @@ def decided_by(result: DesignResult) -> str:
     """Which requirement decides the mass, in a sentence."""
     if not result.decided_by:
         return ""
-    parts = [f"{KINDS.get(kind, kind)} {weight:.2g} %" for kind, weight in result.decided_by.items()]
-    return f"If the limits of one kind were eased by 1 %, the mass would fall by: {', '.join(parts)}."
+    parts = [f"{KINDS.get(kind, kind)} {weight:.2g}\u00a0%" for kind, weight in result.decided_by.items()]
+    return f"If the limits of one kind were eased by 1\u00a0%, the mass would fall by: {', '.join(parts)}."
+
+
+def load_rows(study: Study, result: DesignResult) -> list[Line]:
+    """What the parts must bear in the limit event: quantity, value, unit."""
+    lines = []
+    for name, value in result.limit_event.items():
+        lines.append(Line((PEAKS.get(name, name.replace("_", " ")), *shown(value, unit_of_name(name)))))
+    speed = damper_speed(study, result)
+    if speed is not None:
+        lines.append(Line(("damper speed", *shown(speed, "m/s"))))
+    return lines
+
+
+def size_rows(found: Sequence[Size]) -> list[Line]:
+    """Sizes of parts: part, what, value, unit, margin of safety; what has no margin left is strong."""
+    lines = []
+    for size in found:
+        margin = "" if size.margin is None else "0" if abs(size.margin) < 5e-4 else f"{size.margin:+.3g}"
+        lines.append(Line((size.part, size.words, *shown(size.value, size.unit), margin), margin == "0"))
+    return lines
+
+
+def damping_rows(found: Sequence[LeastDamping]) -> list[Line]:
+    """Least damping of the modes: mode, per cent of critical, frequency, where."""
+    return [Line((m.mode, f"{100 * m.ratio:.3g}", f"{m.frequency:.3g}", place(m.speed, m.load))) for m in found]
+
+
+def beyond(study: Study, found: CriticalSpeed | None) -> str:
+    """What comes after the envelope, in a sentence."""
+    high = study.envelope.speed.max
+    if found is None:
+        return f"No critical speed from there to {_range([BEYOND * high], 'm/s', False)}."
+    kind = f"shimmy at {found.frequency:.3g} Hz" if found.kind == "hopf" else "divergence"
+    return (
+        f"The first critical speed beyond the envelope: {place(found.speed, found.load)} ({kind}), "
+        f"{100 * (found.speed / high - 1):.3g} % above it."
+    )
+
+
+def covers(study: Study) -> str:
+    """What a certificate is a proof of."""
+    damper, start = study.damper, study.start
+    links = "rigid torque links" if damper.links(start) is None else "torque links as stiff as the study says"
+    series = "a damper without compliance" if damper.series(start) is None else "the damper's compliance in series"
+    return (
+        f"The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
+        f"stop reached), no friction, {links}, {series}."
+    )
 
 
 def certificate(result: DesignResult) -> str:
@@ -130,9 +221,10 @@ def certificate(result: DesignResult) -> str:
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",
         "bernstein": "exact Bernstein bounds over rectangles of speed and load",
-    }[proof.method]
-    loads = _loads(proof.loads, proof.method == "bernstein")
-    where = f"margin {proof.margin:g} 1/s, every real speed from {proof.speed[0]:g} to {proof.speed[1]:g} m/s, {loads} kN"
+    }.get(proof.method, proof.method)
+    speeds = _range(proof.speed, "m/s", True)
+    loads = _range(proof.loads, "N", proof.method == "bernstein")
+    where = f"margin {proof.margin:g} 1/s, every real speed from {speeds}, {loads}"
     reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
     if not proof.proved:
         return f"NOT proved: {where}. {reason}"
@@ -146,7 +238,7 @@ def verification(result: DesignResult) -> list[str]:
     if check is not None:
         found.append(
             f"Eigenvalues on {check.grid_speeds} speeds by {check.grid_loads} loads: worst {check.worst.abscissa:.6g} 1/s at "
-            f"{check.worst.speed:.4g} m/s, {check.worst.load / 1e3:g} kN."
+            f"{place(check.worst.speed, check.worst.load)}."
         )
         found.append(f"{check.agreeing_starts} of {len(result.starts)} starts end here; KKT residual {check.kkt_residual:.1g}.")
     if decay is not None:

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..motion.exact import ExactSimulator
-from ..motion.measure import PEAKS, decay, latest_count, loads_of
+from ..motion.measure import PEAKS, decay, fastest_rate, latest_count, loads_of, slowest_rate
 from ..motion.trajectory import Trajectory
 from ..results import DecayCheck, OperatingPoint
-from ..stability.linear import linear_gear
+from ..stability.linear import LinearModel
 from ..study.study import Study
 
 __all__ = ["GridCheck", "check_decay", "check_grid"]
@@ -48,7 +48,7 @@ class GridCheck:
     worst: OperatingPoint
 
 
-def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
+def check_grid(study: Study, design: Mapping[str, float], model: LinearModel | None = None) -> GridCheck:
     """Eigenvalues (`numpy.linalg.eigvals`) at `solver.verification_speeds` speeds and every load.
 
     Parameters
@@ -57,6 +57,8 @@ def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
         With requirements.
     design : mapping
         Design variables by name [SI].
+    model : LinearModel or None
+        Of the study, if it is at hand.
 
     Returns
     -------
@@ -69,13 +71,18 @@ def check_grid(study: Study, design: Mapping[str, float]) -> GridCheck:
     speeds = np.clip(speeds, low, high)
     loads = np.linspace(envelope.loads[0], envelope.loads[-1], 21) if envelope.load_is_range else np.array(envelope.loads)
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
-    abscissa = linear_gear(study, design).abscissa(V, F_z)
+    abscissa = (model or LinearModel(study)).at(design).abscissa(V, F_z)
     top = int(abscissa.argmax())
     worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
     return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)
 
 
-def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tuple[float, float]] = ()) -> DecayCheck:
+def check_decay(
+    study: Study,
+    design: Mapping[str, float],
+    points: Sequence[tuple[float, float]] = (),
+    simulator: ExactSimulator | None = None,
+) -> DecayCheck:
     """Decay by exact simulation, on twice as many speeds as the optimiser has looked at, and refined at the worst.
 
     Parameters
@@ -86,6 +93,8 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
         Design variables by name [SI].
     points : sequence of (speed, load)
         Where to look besides [m/s], [N].
+    simulator : ExactSimulator or None
+        Of the study, if it is at hand.
 
     Returns
     -------
@@ -94,14 +103,14 @@ def check_decay(study: Study, design: Mapping[str, float], points: Sequence[tupl
     """
     required, envelope = study.required.decay, study.envelope
     assert required is not None
-    simulator, made = ExactSimulator(study, design), 0
+    run, made = (simulator or ExactSimulator(study)).with_design(design), 0
 
     peaks = dict.fromkeys(PEAKS, 0.0)
 
     def ratio(speed: float, load: float) -> float:
         nonlocal made
         made += 1
-        found, motion = _exact_ratio(simulator, speed, load)
+        found, motion = _exact_ratio(run, speed, load)
         for name in PEAKS:
             peaks[name] = max(peaks[name], float(np.abs(motion[name]).max()))
         return found
@@ -130,12 +139,11 @@ def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[
     required = simulator.study.required.decay
     assert required is not None
     A = simulator.gear.matrices(speed, load)[0]
-    rates = np.abs(np.linalg.eigvals(A).imag)
-    slowest = min([math.sqrt(max(-A[1, 0], 1.0)), *rates[rates > 1.0]])
-    latest = latest_count(A, required.cycles)
-    duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest
+    names = simulator.state_names
+    latest = latest_count(A, required.cycles, names)
+    duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest_rate(A, names)
     while True:
-        points = math.ceil(duration * max(rates.max(), 20.0) / (2 * math.pi) * PER_CYCLE)
+        points = math.ceil(duration * fastest_rate(A) / (2 * math.pi) * PER_CYCLE)
         motion = simulator(speed, load, required.disturbance, duration, TOLERANCE, points)
         if motion.status == "stopped":
             return math.inf, motion

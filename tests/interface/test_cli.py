@@ -83,6 +83,8 @@ def test_several_combinations_are_ranked_in_one_table(configs, tmp_path):
         cwd=tmp_path,
     )
     assert done.returncode == 0, done.stderr
+    best = damperopt.load_result(tmp_path / "out")  # as analyse --design reads it
+    assert best == damperopt.load_result(next((tmp_path / "out").glob("01-*")))
     with open(tmp_path / "out" / "ranking.csv") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 6

@@ -1,7 +1,5 @@
 """Equations of motion: the composed model against the basic twin, its linearisation, signs and symmetry."""
 
-from types import SimpleNamespace
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -16,7 +14,7 @@ from basic_twin import (
     right_hand_side,
     state_matrix,
 )
-from components_of import TWIN_LAWS
+from components_of import TWIN_LAWS, gear_of
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
@@ -217,10 +215,10 @@ def test_rest_is_an_equilibrium(study, order, rake):
 
 def test_effective_caster_with_rake():
     """e 0.12 m, R_w 0.362 m at 9 deg: 0.118523 + (0.362 + 0.018772) 0.158384 = 0.178831 m, by hand; the caster itself at 0."""
-    gear = SimpleNamespace(caster_length=0.12, rake_angle=np.deg2rad(9.0), wheel_radius=0.362)
-    assert dynamics.effective_caster(gear) == pytest.approx(0.178831, abs=1e-6)
+    numbers = {"kind": "yaw", "yaw_inertia": 1.0, "caster_length": 0.12, "wheel_radius": 0.362}
+    assert gear_of(**numbers, rake_angle="9 deg").lever() == pytest.approx(0.178831, abs=1e-6)
     assert effective_caster(parameters(phi=np.deg2rad(9.0))) == pytest.approx(0.178831, abs=1e-6)
-    assert dynamics.effective_caster(SimpleNamespace(caster_length=0.12, rake_angle=0.0, wheel_radius=0.362)) == 0.12
+    assert gear_of(**numbers).lever() == 0.12
 
 
 # ----------------------------------------------------------------------------------------------------------- signs

@@ -83,7 +83,7 @@ def test_arreaza_part_by_part(main_gear):
     }
     problem = problem_of(main_gear, "arreaza")
     assert problem.parts(design) == pytest.approx(expected, rel=ROUNDING)
-    assert problem.rod_diameter(design) == pytest.approx(rod, rel=ROUNDING)
+    assert problem.least_sizes(design)["rod_diameter"] == pytest.approx(rod, rel=ROUNDING)
     values = problem.values(design)
     diameter = (1e-6 / TUBE_INERTIA) ** 0.25
     stress = TORQUE / ell * ell * (diameter / 2) / 1e-6  # root moment of the tip force T/ell on an arm of length ell

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import damperopt
-from damperopt.figures import style as plots
+from damperopt import figures as plots
 from damperopt.optimum.region import feasible_region
 from damperopt.output import folder as output
+from damperopt.stability.linear import LinearModel
 
 
 @pytest.fixture(scope="module")
@@ -77,13 +78,13 @@ def test_figures_have_axes_with_names_and_units(solved, tmp_path):
     speeds = np.linspace(5, 100, 50)
     before = damperopt.track_modes(damperopt.linear_gear(study), speeds, 150e3)
     after = damperopt.track_modes(damperopt.linear_gear(study, result.design), speeds, 150e3)
-    figures = {
+    drawn = {
         "modes": plots.modes_before_after(before, after, 0.1),
         "single": plots.modes_over_speed(before, 0.1, "title"),
         "mass": plots.mass_by_part(result),
         "region": plots.region(feasible_region(study, result.design, points=41)),
     }
-    for name, figure in figures.items():
+    for name, figure in drawn.items():
         labels = [label for axis in figure.axes for label in (axis.get_xlabel(), axis.get_ylabel()) if label]
         assert labels, name
         assert all("[" in label and label.endswith("]") for label in labels), labels
@@ -107,7 +108,7 @@ def test_region_is_stable_where_eigenvalues_say_so(solved):
     study, result = solved
     region = feasible_region(study, result.design, points=15)
     speeds = np.geomspace(5, 100, 24)
-    model = damperopt.stability.LinearModel(study)
+    model = LinearModel(study)
     for i, y in enumerate(region.y):
         for j, x in enumerate(region.x):
             design = result.design | {region.x_name: x, region.y_name: y}

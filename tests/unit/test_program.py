@@ -93,4 +93,4 @@ def test_parameter_gradient_is_that_of_solving_again(problem):
     for column, step in ((0, 0.05), (1, 300.0)):
         moved = [tuple(point[i] + sign * step * (i == column) for i in range(2)) for sign in (1, -1)]
         up, down = (solver.solve(base.design, [p]).objective for p in moved)
-        assert base.point_gradient[0, column] == pytest.approx((up - down) / (2 * step), rel=2e-2, abs=1e-9)
+        assert base.gradient.points[0, column] == pytest.approx((up - down) / (2 * step), rel=2e-2, abs=1e-9)

@@ -7,7 +7,7 @@ import damperopt
 from damperopt.optimum.multistart import starting_designs
 from damperopt.optimum.problem import DesignProblem
 from damperopt.optimum.scan import promising_designs, sobol_designs, steady_designs, stiffness_scan
-from damperopt.stability.screening import least_conditions, worst_abscissae
+from damperopt.stability.screening import Screening
 
 
 @pytest.fixture(scope="module", params=["boeing", "utas", "arreaza"])
@@ -18,7 +18,7 @@ def problem(request, main_gear):
 def test_screening_agrees_with_eigenvalues(main_gear):
     rng = np.random.default_rng(2)
     k, c = 10 ** rng.uniform(4.5, 6.5, 400), 10 ** rng.uniform(1.5, 5, 400)
-    least = least_conditions(main_gear, k, c)
+    least = Screening(main_gear).least_conditions(k, c)
     speeds = np.geomspace(5, 100, 24)
     for i in range(k.size):
         plain = {"topology": "rotational", "torsional_stiffness": k[i], "torsional_damping": c[i]}
@@ -29,7 +29,7 @@ def test_screening_agrees_with_eigenvalues(main_gear):
 
 def test_worst_abscissae_are_those_of_single_gears(main_gear):
     k, c = np.array([2e5, 1e6, 3e6]), np.array([300.0, 2000.0, 700.0])
-    found = worst_abscissae(main_gear, k, c)
+    found = Screening(main_gear).worst_abscissae(k, c)
     for i in range(3):
         plain = {"topology": "rotational", "torsional_stiffness": k[i], "torsional_damping": c[i]}
         gear = damperopt.linear_gear(main_gear.replace(damper=plain))

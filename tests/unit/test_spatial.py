@@ -156,10 +156,12 @@ class Loop:
 def outputs(study, angles, rate=0.0, **design):
     """Outputs of the package by name at yaw angles and a yaw rate."""
     dae = build(symbolic(study), Smooth())
-    found = Outputs(dae, study, [(DESIGN | design)[name] for name in dae.design_names])
+    found = Outputs(dae, study)
     states = np.zeros((len(dae.state_names), len(angles)))
     states[0], states[1] = angles, rate
-    return dict(zip(found.names, found(states, 40.0, 150e3, 0.0), strict=True))
+    return dict(
+        zip(found.names, found(states, [(DESIGN | design)[name] for name in dae.design_names], 40.0, 150e3, 0.0), strict=True)
+    )
 
 
 def number(expression):

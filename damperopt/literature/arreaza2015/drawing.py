@@ -9,6 +9,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from ...figures.style import styled
+from ...quantities.shown import shown
+from ...study.components import unit_of_name
 from .responses import Response, ThesisResponse
 
 __all__ = ["response"]
@@ -59,8 +61,9 @@ def _yaw_and_bending(figure: ThesisResponse, one: Response) -> Any:
 
 
 def _values(one: Response) -> str:
-    words = {"c_lambda": (r"$c_\lambda$", "N s/m"), "k_lambda": (r"$k_\lambda$", "N/m"), "I_arm": (r"$I_\mathrm{arm}$", "m⁴")}
-    return ", ".join(f"{symbol} {one.design[name]:g} {unit}" for name, (symbol, unit) in words.items() if name in one.design)
+    symbols = {"c_lambda": r"$c_\lambda$", "k_lambda": r"$k_\lambda$", "I_arm": r"$I_\mathrm{arm}$"}
+    held = {symbol: shown(one.design[name], unit_of_name(name)) for name, symbol in symbols.items() if name in one.design}
+    return ", ".join(f"{symbol} {value} {unit}" for symbol, (value, unit) in held.items())
 
 
 def _amplitude(one: Response) -> str:

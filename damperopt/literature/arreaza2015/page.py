@@ -139,17 +139,17 @@ def write_thesis(
 
 
 def _panel(place: Path, study: Study, todo: tuple[ThesisFigure | ThesisResponse, str]) -> Shown:
-    from ...figures import style as plots
+    from ...figures import save_each
     from ...figures.chart import chart as draw
     from .drawing import response
 
     figure, form = todo
     if isinstance(figure, ThesisResponse):
         found = respond(figure, study, form)
-        plots.save(response(figure, found), place, _name(figure, form))
+        save_each({_name(figure, form): lambda: response(figure, found)}, place)
         return found
     record = trace_figure(figure, study, form)
-    plots.save(draw(record), place, _name(figure, form))
+    save_each({_name(figure, form): lambda: draw(record)}, place)
     return record
 
 

@@ -7,6 +7,7 @@ k_delta for the damper's damping and stiffness, c_lambda and k_lambda are read; 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -162,12 +163,13 @@ MISPRINTS = {"boeing": _boeing_misprints, "utas": _utas_misprints, "arreaza": _n
 class PrintedTreadMoment(Plane):
     """The gear of matrix (3-5): the tread-width moment has the printed sign, which feeds a vibration (erratum 1)."""
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._values["tyre.tread_width_moment"] *= -1
+    @cached_property
+    def _values(self) -> dict[str, float]:
+        values = super()._values
+        return values | {"tyre.tread_width_moment": -values["tyre.tread_width_moment"]}
 
 
-@dataclass
+@dataclass(frozen=True)
 class PrintedPlane(Plane):
     """The gear of the printed coefficients: companion matrices in place of state matrices.
 

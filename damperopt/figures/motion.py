@@ -1,0 +1,96 @@
+"""Motion over time, and its decay over speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from ..motion.trajectory import Motion, Trajectory
+from ..quantities.shown import axis_label, scale, written
+from ..results import DecayCheck
+from ..study.components import unit_of_name
+from .style import COLOURS, plain, styled
+
+__all__ = ["decay", "trajectory"]
+
+PANELS = (
+    ("Yaw angle", (("yaw_angle", ""),)),
+    ("Lateral", (("lateral_displacement", "gear, $l_g \\sin\\delta$"), ("string_deflection", "tyre string"))),
+    ("Damper force", (("damper_force", ""),)),
+    ("Damper stroke", (("damper_stroke", ""),)),
+    ("Damper torque", (("damper_torque", ""),)),
+    ("Damper angle", (("damper_angle", ""),)),
+    ("Arm stress", (("arm_stress", ""),)),
+)
+"""Panels of a trajectory: words of the axis, and (name, label) of each curve."""
+
+
+def trajectory(record: Trajectory, motion: Motion) -> Any:
+    """Yaw, lateral motion, damper force and stroke, and arm stress over time.
+
+    Parameters
+    ----------
+    record : Trajectory
+    motion : Motion
+        What it shows, for the title.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    panels = [(label, [c for c in curves if c[0] in {*record.states, *record.outputs}]) for label, curves in PANELS]
+    panels = [(label, curves) for label, curves in panels if curves]
+    with styled():
+        figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)
+        for axis, (label, curves) in zip(rows[:, 0], panels, strict=True):
+            unit = unit_of_name(curves[0][0])
+            for (name, legend), colour in zip(curves, COLOURS.values(), strict=False):
+                axis.plot(record.time, scale(unit)[1] * record[name], lw=1, color=colour, label=legend)
+            axis.set_ylabel(axis_label(label, unit))
+            axis.ticklabel_format(axis="y", useOffset=False)
+            axis.margins(x=0)
+            if len(curves) > 1:
+                axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, fontsize=8, borderaxespad=0)
+        rows[-1, 0].set_xlabel("Time [s]")
+        figure.align_ylabels(rows[:, 0])
+        words = motion.kind if not record.message else f"{motion.kind}: {plain(record.message)}"
+        figure.suptitle(f"{written(record.speed, record.load)}: {words}", fontsize=10)
+        return figure
+
+
+def decay(record: Trajectory, check: DecayCheck, speeds: np.ndarray, ratios: np.ndarray) -> Any:
+    """The worst motion with the band that it must stay in, and the decay ratio over speed.
+
+    Parameters
+    ----------
+    record : Trajectory
+        At the worst speed.
+    check : DecayCheck
+    speeds, ratios : ndarray
+        (m,) [m/s] and decay ratios at the worst load.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    limit = f"{check.limit:.3g} of the first"
+    with styled():
+        figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+        first = np.abs(record["yaw_angle"]).max()
+        left.plot(record.time, np.degrees(record["yaw_angle"]), color=COLOURS["torsional"], lw=1.2)
+        after = record.time[-1] / 1.8
+        for sign in (1, -1):
+            left.plot([after, record.time[-1]], [sign * np.degrees(check.limit * first)] * 2, color="#333333", ls="--", lw=1)
+        left.text(record.time[-1], np.degrees(check.limit * first) * 1.15, limit, ha="right", fontsize=9, color="#333333")
+        left.set(xlabel="Time [s]", ylabel="Yaw angle [deg]")
+        left.set_title(f"Worst speed, {check.speed:.1f} m/s, {written(load=check.load)}", fontsize=10)
+        left.margins(x=0)
+        right.plot(speeds, ratios, color=COLOURS["torsional"])
+        right.axhline(check.limit, color="#333333", ls="--", lw=1)
+        right.plot(check.speed, check.ratio, "o", color=COLOURS["lateral"])
+        right.text(speeds[-1], 1.02 * check.limit, limit, ha="right", va="bottom", fontsize=9, color="#333333")
+        right.set(xlabel="Speed [m/s]", ylabel=f"Decay ratio after {check.cycles} cycles", ylim=(0, 1.25 * check.limit))
+        right.margins(x=0)
+        return figure

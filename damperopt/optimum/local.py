@@ -1,0 +1,98 @@
+"""The best local optimum from one start, by both ways to impose stability: first without decay, which asks for no simulation,
+then with it from the design found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from .decay_exchange import solve_with_decay
+from .exchange import EnvelopeSolution, solve_envelope
+from .problem import DesignProblem
+from .program import FactorProgram, HurwitzProgram
+from .solve import NlpSolver
+
+__all__ = ["best_local", "held_again"]
+
+MUCH_BETTER = 0.1
+"""Part of the required decay ratio below which a start decays so much better that it lies in no basin of its own."""
+
+
+def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
+    """Local optimum from `start` by the Hurwitz program; where that fails by the factor program, improved by the first.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    start : mapping
+        Design variables by name [SI].
+    points : sequence of (speed, load)
+        Where stability is imposed in the first round.
+
+    Returns
+    -------
+    EnvelopeSolution
+        That meets the decay requirement too, if there is one.
+    """
+    if solver.problem.study.required.decay is None:
+        return _best_stable(solver, start, points)
+    if _decays_moderately(solver.problem, start):  # such a start may lie in a basin of its own
+        direct = solve_with_decay(solver, start, points, HurwitzProgram)
+        if direct.solved:
+            return direct
+    found = _best_stable(solver, start, points)
+    return solver.remembered(found.solution.design, lambda: _best_decayed(solver, found)) if found.solved else found
+
+
+def held_again(
+    solver: NlpSolver,
+    found: EnvelopeSolution,
+    points: Sequence[tuple[float, float]] = (),
+    decay_points: Sequence[tuple[float, float]] = (),
+) -> EnvelopeSolution:
+    """An optimum solved again with points that its exchange has missed.
+
+    Parameters
+    ----------
+    solver : NlpSolver
+    found : EnvelopeSolution
+    points, decay_points : sequence of (speed, load)
+        For stability and for decay [m/s], [N].
+
+    Returns
+    -------
+    EnvelopeSolution
+    """
+    design, points = found.solution.design, [*found.solution.points, *points]
+    if solver.problem.study.required.decay is None:
+        return best_local(solver, design, points)
+    form = FactorProgram if found.solution.form == FactorProgram.__name__ else HurwitzProgram
+    return solve_with_decay(solver, design, points, form, decay_points)
+
+
+def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
+    found = solve_envelope(solver, start, points, HurwitzProgram)
+    if found.solved:
+        return found
+    found = solve_envelope(solver, start, points, FactorProgram)
+    if not found.solved:
+        return found
+    again = solve_envelope(solver, found.solution.design, found.solution.points, HurwitzProgram)
+    return again if again.solved and again.solution.objective < found.solution.objective else found
+
+
+def _decays_moderately(problem: DesignProblem, design: Mapping[str, float]) -> bool:
+    """Whether the linear gear decays, and not ten times as well as it must."""
+    if not problem.has_one_damping:
+        return True
+    required, yaw = problem.study.required.decay, problem.yaw_numbers(design)
+    assert required is not None
+    k_psi, c_psi = (np.array([yaw[name]]) for name in ("torsional_stiffness", "torsional_damping"))
+    return bool(MUCH_BETTER * required.ratio < problem.screening.linear_decay(k_psi, c_psi)[0] < 1)
+
+
+def _best_decayed(solver: NlpSolver, found: EnvelopeSolution) -> EnvelopeSolution:
+    points = list(found.solution.points)
+    decayed = solve_with_decay(solver, found.solution.design, points, HurwitzProgram)
+    return decayed if decayed.solved else solve_with_decay(solver, found.solution.design, points, FactorProgram)

@@ -1,0 +1,180 @@
+"""What a design review asks beside the answer: loads and sizes of the parts, damping of the modes, the next critical speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..motion.measure import PEAKS
+from ..ports.linkage import Member
+from ..ports.sizing import LimitEvent
+from ..results import DesignResult
+from ..stability.critical import CriticalSpeed, critical_speeds
+from ..stability.linear import LinearGear
+from ..stability.modes import ModeTable
+from ..strength.cylinder import bore, rod_diameters, rod_length
+from ..strength.materials import allowable_stress
+from ..strength.members import distance, root_stress
+from ..strength.sections import area_for_modulus, fibre_distance, shape_numbers
+from ..study.study import Study
+
+__all__ = ["LeastDamping", "Size", "damper_speed", "least_damping", "next_critical_speed", "sizes"]
+
+BEYOND = 3.0
+"""Speeds up to this multiple of the envelope's largest are searched for the next critical one."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """A dimension of a part [SI].
+
+    Attributes
+    ----------
+    part, words : str
+    value : float
+    unit : str
+        SI unit.
+    margin : float or None
+        Of safety, load that it bears over limit load, less 1; None where it is no measure of strength.
+    """
+
+    part: str
+    words: str
+    value: float
+    unit: str
+    margin: float | None = None
+
+
+@dataclass(frozen=True)
+class LeastDamping:
+    """Where a mode is damped least: damping ratio, frequency [Hz], speed [m/s] and load [N]."""
+
+    mode: str
+    ratio: float
+    frequency: float
+    speed: float
+    load: float
+
+
+def least_damping(tables: Sequence[ModeTable]) -> list[LeastDamping]:
+    """Least damping ratio of every mode that oscillates, over speeds and loads.
+
+    Parameters
+    ----------
+    tables : sequence of ModeTable
+        One for each load.
+
+    Returns
+    -------
+    list of LeastDamping
+        The least first.
+    """
+    found: dict[str, LeastDamping] = {}
+    for table in tables:
+        ratios = np.where(np.abs(table.eigenvalues.imag) > 1e-6, table.damping_ratio, np.inf)
+        for j, name in enumerate(table.names):
+            i = int(ratios[:, j].argmin())
+            ratio = float(ratios[i, j])
+            if math.isfinite(ratio) and (name not in found or ratio < found[name].ratio):
+                found[name] = LeastDamping(name, ratio, float(table.frequency[i, j]), float(table.speeds[i]), table.load)
+    return sorted(found.values(), key=lambda least: least.ratio)
+
+
+def next_critical_speed(study: Study, gear: LinearGear) -> CriticalSpeed | None:
+    """Least speed beyond the envelope, up to `BEYOND` times its largest, at which the gear turns unstable."""
+    high = study.envelope.speed.max
+    found = [c for load in study.envelope.loads for c in critical_speeds(gear, load, high, BEYOND * high)]
+    turning = [c for c in found if c.boundary and c.destabilising and c.speed > high]
+    return min(turning, key=lambda c: c.speed, default=None)
+
+
+def damper_speed(study: Study, result: DesignResult) -> float | None:
+    """Peak speed of the damper in the limit event [m/s], by its linear damping; None where no one number says that."""
+    force = result.limit_event.get("damper_force")
+    damping = study.damper.damping(result.design) if result.design else None
+    return force / float(damping) if force is not None and damping else None
+
+
+def sizes(study: Study, result: DesignResult) -> list[Size]:
+    """Sections of links and arms, rod, bore, wall and pressure of the damper, with margins of safety at the limit event.
+
+    Parameters
+    ----------
+    study : Study
+    result : DesignResult
+        With a design.
+
+    Returns
+    -------
+    list of Size
+        Tapered links and supports at their root, which is sized to its allowable stress exactly.
+    """
+    event = _event(study, result)
+    if event is None:
+        return []
+    found: list[Size] = []
+    for member in study.damper.members(result.design):
+        if member.section:
+            found += _member(study, member, event)
+    return found + _cylinder(study, event, result.derived.get("rod_diameter"))
+
+
+def _event(study: Study, result: DesignResult) -> LimitEvent | None:
+    """The limit event of a result, with what follows from its peaks."""
+    peaks = result.limit_event
+    if not set(PEAKS) <= peaks.keys():
+        return None
+    reach = study.damper.linkage(result.design, study.material.youngs_modulus).reach
+    return LimitEvent(
+        torque=peaks["linkage_torque"],
+        yaw=peaks["yaw_angle"],
+        yaw_rate=math.nan,
+        stroke=peaks["damper_stroke"],
+        damper_force=peaks["damper_force"],
+        apex_force=peaks["linkage_torque"] / float(reach),
+        arm_moment=math.nan,
+        spring_force=peaks["spring_force"],
+        spring_energy=math.nan,  # like the other two: no size of a member hangs on it
+        safety_factor=study.required.safety_factor,
+    )
+
+
+def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
+    """Height and wall of the section of a member; at its root, if it is a cantilever that its load sizes."""
+    section = getattr(study.mass, member.section)
+    allowable = allowable_stress(study.material, study.required.safety_factor)
+    if member.inertia is None:
+        length = distance(member.start, member.end) if member.length is None else member.length
+        area = area_for_modulus(section, getattr(event, member.load) * length / allowable)
+        part, inertia, margin = f"{member.name}, root", (area / shape_numbers(section)[0]) ** 2, 0.0
+    else:
+        part, inertia, margin = member.name, member.inertia, allowable / root_stress(member, event, study) - 1
+    height = 2 * fibre_distance(section, inertia)
+    words = "outer diameter" if section.family in ("tube", "solid_round") else "height of the section"
+    found = [Size(part, words, float(height), "m", float(margin))]
+    if section.thickness_ratio is not None:
+        found.append(Size(part, "wall", float(section.thickness_ratio * height), "m"))
+    return found
+
+
+def _cylinder(study: Study, event: LimitEvent, rod: float | None) -> list[Size]:
+    """Rod against yield (its area) and buckling (its second moment), cylinder against the working pressure."""
+    if rod is None:
+        return []
+    model = study.mass
+    sigma = allowable_stress(model.damper_material, study.required.safety_factor)
+    least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}
+    diameter = float(bore(event, model, rod))
+    needed = model.working_pressure * diameter / (2 * sigma)
+    wall = model.wall_allowance + needed  # as `cylinder_mass` reckons it
+    return [
+        Size("damper rod", "diameter, against yield", rod, "m", (rod / least["rod_yield"]) ** 2 - 1),
+        Size("damper rod", "diameter, against buckling", rod, "m", (rod / least["rod_buckling"]) ** 4 - 1),
+        Size("damper cylinder", "bore", diameter, "m"),
+        Size("damper cylinder", "wall", wall, "m", wall / needed - 1),
+        Size("damper cylinder", "length of cylinder and rod", float(rod_length(event, model)), "m"),
+        Size("damper cylinder", "peak pressure", model.working_pressure, "Pa"),
+    ]

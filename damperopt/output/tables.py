@@ -1,0 +1,114 @@
+"""Tables of a run: modes, rankings, motions and charts as CSV and JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from ..charts.chart import StabilityChart
+from ..motion.trajectory import Motion, Trajectory
+from ..results import DesignResult
+from ..stability.modes import ModeTable
+from ..study.components import unit_of_name
+from ..study.disturbances import Disturbance
+
+__all__ = [
+    "write_chart",
+    "write_chart_json",
+    "write_modes",
+    "write_motion",
+    "write_ranking",
+    "write_trajectory",
+]
+
+MODE_COLUMNS = (
+    "speed_m_s",
+    "vertical_load_N",
+    "mode",
+    "real_1_s",
+    "imag_rad_s",
+    "frequency_Hz",
+    "damping_ratio",
+)
+
+
+def write_modes(path: Path, tables: Iterable[ModeTable]) -> None:
+    """Modes as CSV, one row per speed and mode (of a conjugate pair the root with a positive imaginary part)."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(MODE_COLUMNS)
+        for table in tables:
+            for i, j in table.upper_half():
+                root = table.eigenvalues[i, j]
+                numbers = [root.real, abs(root.imag), table.frequency[i, j], table.damping_ratio[i, j]]
+                speed_load = [f"{table.speeds[i]:.12g}", f"{table.load:.12g}"]
+                writer.writerow([*speed_load, table.names[j], *(np.format_float_scientific(v, precision=11) for v in numbers)])
+
+
+def write_ranking(path: Path, results: Sequence[DesignResult]) -> None:
+    """Ranking as CSV: one row per combination, the lightest first; design variables in SI, their unit in the name."""
+    names = list(dict.fromkeys(name for result in results for name in result.design))
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        columns = [f"{name} [{unit_of_name(name)}]" for name in names]
+        writer.writerow(["rank", "topology", "material", "status", "mass_kg", "abscissa_1_s", *columns])
+        for rank, result in enumerate(results, 1):
+            mass = f"{result.mass.total:.9g}" if result.mass else ""
+            abscissa = f"{result.stability.abscissa:.9g}" if result.stability else ""
+            design = [f"{result.design[name]:.9g}" if name in result.design else "" for name in names]
+            writer.writerow([rank, result.topology, result.material, result.status, mass, abscissa, *design])
+
+
+def write_trajectory(path: Path, motion: Trajectory) -> None:
+    """Trajectory as CSV: time, states and outputs in SI, one row per output time."""
+    names = ("time", *motion.states, *motion.outputs)
+    columns = (motion.time, *motion.states.values(), *motion.outputs.values())
+    header = ",".join(f"{name} [{unit_of_name(name)}]" for name in names)
+    np.savetxt(path, np.column_stack(columns), fmt="%.10e", delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+def write_motion(
+    path: Path, trajectory: Trajectory, motion: Motion, disturbance: Disturbance, design: Mapping[str, float]
+) -> None:
+    """What a trajectory shows as JSON, with the question that it answers."""
+    record = {
+        "speed": trajectory.speed,
+        "load": trajectory.load,
+        "disturbance": disturbance.model_dump(exclude_none=True),
+        "design": dict(design),
+        "engine": trajectory.engine,
+        "status": trajectory.status,
+        "message": trajectory.message,
+        "duration": float(trajectory.time[-1]),
+        **asdict(motion),
+    }
+    path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_chart(path: Path, record: StabilityChart) -> None:
+    """Curves of a chart as CSV: one row per point, in order along each curve."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        varied = f"{record.varied.name} [{record.varied.unit}]" if record.varied else "family"
+        axes = [f"{axis.name} [{axis.unit}]" for axis in (record.x, record.y)]
+        writer.writerow([varied, "curve", *axes, "type", "frequency [Hz]"])
+        for family in record.families:
+            for number, curve in enumerate(family.curves, 1):
+                for (x, y), hopf, frequency in zip(curve.points, curve.hopf, curve.frequency, strict=True):
+                    kind = "Hopf" if hopf else "divergence"
+                    value = "" if family.value is None else f"{family.value:.12g}"
+                    writer.writerow([value, number, f"{x:.12g}", f"{y:.12g}", kind, f"{frequency:.9g}"])
+
+
+def write_chart_json(path: Path, record: StabilityChart) -> None:
+    """The same as JSON, with everything that was held fixed."""
+    data = asdict(record)
+    for family in data["families"]:
+        for curve in family["curves"]:
+            curve.update({key: curve[key].tolist() for key in ("points", "hopf", "frequency", "corners")})
+    path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

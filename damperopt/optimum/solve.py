@@ -269,6 +269,6 @@ def _kkt_residual(built: _Built, it: Instance, x: np.ndarray, g: np.ndarray, lam
     slack = np.concatenate([np.minimum(it.ubg - g, g - it.lbg), np.minimum(it.ubx - x, x - it.lbx)[free]])
     multipliers = np.concatenate([lam_g, lam_x[free]])
     limited = np.isfinite(slack)
-    # rows are logarithmic ratios or metres: one that is met by 1 is met; a limit of many kilometres would magnify a multiplier's rounding
+    # rows are logarithmic ratios or metres; the slack of a far limit, in kilometres, would magnify a multiplier's rounding
     complementarity = np.abs(multipliers[limited] * np.minimum(slack[limited], 1.0))
     return float(max(np.abs(stationarity).max(), complementarity.max(initial=0.0), (-slack[limited]).max(initial=0.0)))

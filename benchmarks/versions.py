@@ -84,7 +84,7 @@ def collect(optima: bool) -> dict[str, dict[str, list[float]]]:
             motion = damperopt.simulate(
                 study, design, speed=30.0, disturbance={"release": {"yaw_angle": 0.01}}, duration=0.4, engine="cvodes"
             )
-            shown = [] if "rotational" in study.damper.topology else sorted(motion.outputs)
+            shown = [] if "rotational" in study.damper.topology else sorted(set(motion.outputs) - {"unclosed"})
             rows = [motion.time, *motion.states.values(), *(motion.outputs[key] for key in shown)]
             sizes = [np.abs(row).max() or 1.0 for row in rows]  # each quantity in units of its largest value
             shown_rows = [row[:: max(len(row) // 20, 1)] / size for row, size in zip(rows, sizes, strict=True)]

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from ...expressions.calculus import Expr, absolute, is_symbol, tan, where
+from ...expressions.calculus import Expr, absolute, tan, where
 from ...expressions.corners import Corners
 from ...ports.sizing import Peaks
 from ...quantities.record import refuse
@@ -50,12 +50,11 @@ class BrushLaw(SlipLaw):
         return mu * load, where(part < 1, part, 1.0)
 
     def force(self, alpha_F: Expr, load: Expr, pressure: Expr) -> Expr:
-        """F_y = mu F_z (1 - (1 - h)^3) sign(alpha), h the part that slides [N]; written so that it is smooth at zero slip."""
-        _, h = self._sliding(alpha_F, load)
-        # mu F_z h = C_Fa |tan(alpha)|/3 while part of the footprint sticks
+        """F_y = mu F_z (1 - (1 - h)^3) sign(alpha), h the part that slides [N]."""
+        grip, h = self._sliding(alpha_F, load)
+        # mu F_z h = C_Fa |tan(alpha)|/3 while part of the footprint sticks: written with it, the law is smooth at zero slip
         sticks = self.cornering_stiffness * tan(alpha_F) * (3 - 3 * h + h**2) / 3
-        grip, _ = self._sliding(alpha_F, load)
-        return where(h < 1, sticks, grip * _sign(alpha_F))
+        return where(h < 1, sticks, grip * where(alpha_F < 0, -1.0, 1.0))
 
     def moment(self, alpha_M: Expr, load: Expr, pressure: Expr, corners: Corners) -> Expr:
         """M_z = mu F_z a h (1 - h)^3 sign(alpha) [N m]."""
@@ -67,7 +66,3 @@ class BrushLaw(SlipLaw):
         """mu F_z, and the moment at a quarter of the slip at which all slides, 27/256 mu F_z a (constant friction)."""
         a = self.half_contact_length  # type: ignore[attr-defined]  # of the tyre it belongs to
         return Peaks(self.friction * load, 27 / 256 * self.friction * load * a)
-
-
-def _sign(alpha: Expr) -> Expr:
-    return alpha.sign() if is_symbol(alpha) else where(alpha < 0, -1.0, 1.0)

@@ -22,7 +22,7 @@ import casadi as ca
 from .dampers.base import Context
 from .expressions.corners import Corners, Linear
 from .expressions.dae import DAE
-from .linkages.torque import CHAIN_STATES, damper_torque
+from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
 from .quantities.named import State
 from .strength.members import root_stress_of_force
 from .symbols import SymbolicStudy
@@ -68,11 +68,17 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     rates += [rate for contact in contacts for rate in contact.rates]
     rates += [torque.rates[name] for name in torque.states]
     outputs = dict(torque.outputs) | dict(motion.outputs)
+    declared = [*gear.OUTPUTS, *(ROTARY_OUTPUTS if damper.ROTARY else OUTPUTS), *damper.KIND.OUTPUTS]
+    units = {output.name: output.unit for output in declared}
     for i, contact in enumerate(contacts):
         outputs |= {_named(name, i, len(wheels)): value for name, value in contact.outputs.items()}
+        units |= {_named(output.name, i, len(wheels)): output.unit for output in tyre.OUTPUTS}
     for member in damper.members(design):
         if member.inertia is not None:
+            units["arm_stress"] = "Pa"
             outputs["arm_stress"] = root_stress_of_force(member, torque.outputs["spring_force"], study)
+    if unnamed := outputs.keys() - units.keys():
+        raise ValueError(f"output '{min(unnamed)}' is declared by no component, so that it has no unit")
     return DAE(
         x=ca.vertcat(*x.values(), *(value for string in strings for value in string), *torque.states.values()),
         z=ca.vertcat(ca.SX(0, 1), *torque.unknowns),
@@ -88,6 +94,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         design_names=tuple(design),
         data_names=symbols.names,
         outputs=outputs,
+        output_units={name: units[name] for name in outputs},
     )
 
 

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from ..charts.chart import StabilityChart
 from ..literature.arreaza2015 import Row
-from ..motion.trajectory import TRAJECTORY_UNITS, Motion, Trajectory
+from ..motion.trajectory import Motion, Trajectory
 from ..results import UNITS, Certificate, DesignResult, OperatingPoint
 from ..stability.critical import CriticalSpeed
 from ..study.study import Study
@@ -120,7 +120,7 @@ def show_motion(console: Console, trajectory: Trajectory, motion: Motion, cycles
     table = _table("peak", "value", "unit")
     for name in SHOWN_PEAKS:
         if name in motion.peaks:
-            value, unit = motion.peaks[name], TRAJECTORY_UNITS[name]
+            value, unit = motion.peaks[name], trajectory.units[name]
             table.add_row(name.replace("_", " "), *(_number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)))
     console.print(table)
 

@@ -33,6 +33,8 @@ class DAE:
         (m,) algebraic unknowns at x = 0; of design and data.
     outputs : mapping of str to SX
         Other quantities by name [SI].
+    output_units : mapping of str to str
+        Their SI units.
     states : tuple of State
         Declarations of the states, in the order of `x`.
     design_names, data_names : tuple of str
@@ -53,11 +55,18 @@ class DAE:
     design_names: tuple[str, ...]
     data_names: tuple[str, ...]
     outputs: Mapping[str, Any] = field(default_factory=dict)
+    output_units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states, in the order of `x`."""
         return tuple(state.name for state in self.states)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI unit of every state and output by name, of what simulations add to them, and of time."""
+        added = {"time": "s", "yaw_acceleration": "rad/s^2", "unclosed": "m"}
+        return {state.name: state.unit for state in self.states} | dict(self.output_units) | added
 
     def index(self, name: str) -> int:
         """Position of a state in `x`."""

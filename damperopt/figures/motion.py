@@ -10,7 +10,6 @@ import numpy as np
 from ..motion.trajectory import Motion, Trajectory
 from ..quantities.shown import axis_label, scale, written
 from ..results import DecayCheck
-from ..study.components import unit_of_name
 from .style import COLOURS, plain, styled
 
 __all__ = ["decay", "trajectory"]
@@ -24,7 +23,10 @@ PANELS = (
     ("Damper angle", (("damper_angle", ""),)),
     ("Arm stress", (("arm_stress", ""),)),
 )
-"""Panels of a trajectory: words of the axis, and (name, label) of each curve."""
+"""Panels of a trajectory: words of the axis, and (name, label) of each curve; states that no panel names get one each."""
+
+ELSEWHERE = {"yaw_rate", "bending_angle", "bending_rate", "dashpot_stroke", "link_angle"}
+"""States that another curve shows."""
 
 
 def trajectory(record: Trajectory, motion: Motion) -> Any:
@@ -41,11 +43,13 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
     matplotlib Figure
     """
     panels = [(label, [c for c in curves if c[0] in {*record.states, *record.outputs}]) for label, curves in PANELS]
+    drawn = {name for _, curves in panels for name, _ in curves} | ELSEWHERE
+    panels += [(name.replace("_", " "), [(name, "")]) for name in record.states if name not in drawn]
     panels = [(label, curves) for label, curves in panels if curves]
     with styled():
         figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)
         for axis, (label, curves) in zip(rows[:, 0], panels, strict=True):
-            unit = unit_of_name(curves[0][0])
+            unit = record.units.get(curves[0][0], "1")
             for (name, legend), colour in zip(curves, COLOURS.values(), strict=False):
                 axis.plot(record.time, scale(unit)[1] * record[name], lw=1, color=colour, label=legend)
             axis.set_ylabel(axis_label(label, unit))

@@ -113,7 +113,7 @@ class ExactSimulator:
         step = ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ dae.alg if dae.z.numel() else dae.z
         self.yaw_rate = dae.index("yaw_rate")
         outputs = {"yaw_acceleration": dae.ode[self.yaw_rate], **dae.outputs}
-        self.unknowns = dae.z.numel()
+        self.unknowns, self.units = dae.z.numel(), dae.units
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque), dae.design]
@@ -167,7 +167,7 @@ class ExactSimulator:
             message = f"{message} after {time[-1]:.4g} s"
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"
         forcing = speed / self.study.gear.wheel_radius / (2 * math.pi) if disturbance.unbalance_moment else 0.0
-        return Trajectory(speed, load, time, states, named, status, message, "exact", forcing)
+        return Trajectory(speed, load, time, states, named, status, message, "exact", forcing, self.units)
 
 
 class _Fast:

@@ -28,8 +28,8 @@ NEWTON_STEPS = 6
 """Of `dae.eliminate`: enough for the residual to reach rounding at yaw angles up to 0.6 rad."""
 
 
-IDAS_FLOOR = 3e-12
-"""Relative tolerance below which IDAS no longer finds a first step with algebraic unknowns."""
+IDAS_FLOOR, LEAST_IDAS = 3e-12, 1e-12
+"""Relative tolerance below which IDAS no longer finds a first step, with algebraic unknowns and without."""
 
 
 @cache
@@ -120,7 +120,7 @@ class Integrator:
             compiled = engine == "erk" and has_compiler()
         self._size, self._algebraic = x.numel(), z.numel()
         grid = np.linspace(0, 1, steps + 1).tolist()
-        self._function = _create(engine, problem, grid, _options(engine, tolerance), compiled)
+        self._function = _create(engine, problem, grid, _options(engine, tolerance, self._m), compiled)
 
     def __call__(
         self,
@@ -205,11 +205,12 @@ def _with_sensitivities(model: DAE) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
     return x, ca.vertcat(model.z, ca.vec(R)), ode, ca.vertcat(g, ca.vec(total(g)))
 
 
-def _options(engine: str, tolerance: float) -> dict[str, Any]:
+def _options(engine: str, tolerance: float, unknowns: int) -> dict[str, Any]:
     if engine == "erk":
         return {"reltol": tolerance, "abstol": tolerance / 100, "max_num_steps": 200_000}
     # multistep methods accumulate error: at equal error they need a tighter tolerance
-    relative = max(tolerance / 100, IDAS_FLOOR if engine == "idas" else 0.0)
+    floor = IDAS_FLOOR if unknowns else LEAST_IDAS
+    relative = max(tolerance / 100, floor if engine == "idas" else 0.0)
     tight: dict[str, Any] = {"reltol": relative, "abstol": relative / 100, "max_num_steps": 20_000}
     tight |= {"disable_internal_warnings": True}  # what they print is raised as well
     if engine == "cvodes":

@@ -128,7 +128,7 @@ class Simulator:
         if design is not None:
             self._model.at(self.design)  # refuses an incomplete design
         dae = build(symbolic(study), Smooth())
-        self._state_names = dae.state_names
+        self._state_names, self._units = dae.state_names, dae.units
         self._integrator = Integrator(dae, data_values(study), STEPS, self.engine, tolerance)
         self._outputs = Outputs(dae, study)
 
@@ -175,7 +175,7 @@ class Simulator:
             message = f"{message} after {time[-1]:.4g} s"
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"
         forcing = rate / (2 * math.pi) if unbalance else 0.0
-        return Trajectory(speed, load, time, kept_states, named, status, message, self.engine, forcing)
+        return Trajectory(speed, load, time, kept_states, named, status, message, self.engine, forcing, self._units)
 
 
 class _Last:

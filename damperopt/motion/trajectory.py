@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from .measure import crossings, decay, extrema
 
-__all__ = ["TRAJECTORY_UNITS", "Motion", "Trajectory", "motion_of"]
+__all__ = ["Motion", "Trajectory", "motion_of"]
 
 Kind: TypeAlias = Literal["settled", "decaying", "limit cycle", "forced response", "growing", "diverging"]
 
@@ -33,34 +33,6 @@ decay, 2/3 for one that goes with the reciprocal of time."""
 
 SAME_FREQUENCY = 0.02
 """Relative; a motion at the frequency of what drives it."""
-
-TRAJECTORY_UNITS = {
-    "time": "s",
-    "yaw_angle": "rad",
-    "yaw_rate": "rad/s",
-    "yaw_acceleration": "rad/s^2",
-    "bending_angle": "rad",
-    "bending_rate": "rad/s",
-    "string_deflection": "m",
-    "dashpot_stroke": "m",
-    "link_angle": "rad",
-    "damper_stroke": "m",
-    "damper_speed": "m/s",
-    "damper_force": "N",
-    "spring_deflection": "m",
-    "spring_force": "N",
-    "stop_force": "N",
-    "linkage_torque": "N m",
-    "torque_without_friction": "N m",
-    "slip_angle": "rad",
-    "side_force": "N",
-    "aligning_moment": "N m",
-    "lateral_displacement": "m",
-    "arm_stress": "Pa",
-    "unclosed": "m",
-}
-"""SI unit of every state and output; for a damper given about the yaw axis strokes are angles and forces torques."""
-
 
 ROUNDING = 1e-9
 """Amplitude [rad] that is nothing but integration error."""
@@ -86,6 +58,8 @@ class Trajectory:
         Integrator.
     forcing : float
         Frequency [Hz] at which the gear is driven; 0: by nothing.
+    units : mapping of str to str
+        SI unit of the time and of every state and output, as the components declare them.
     """
 
     speed: float
@@ -97,6 +71,7 @@ class Trajectory:
     message: str
     engine: str
     forcing: float = 0.0
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """State or output by name."""

@@ -68,7 +68,7 @@ def write_trajectory(path: Path, motion: Trajectory) -> None:
     """Trajectory as CSV: time, states and outputs in SI, one row per output time."""
     names = ("time", *motion.states, *motion.outputs)
     columns = (motion.time, *motion.states.values(), *motion.outputs.values())
-    header = ",".join(f"{name} [{unit_of_name(name)}]" for name in names)
+    header = ",".join(f"{name} [{motion.units[name]}]" for name in names)
     np.savetxt(path, np.column_stack(columns), fmt="%.10e", delimiter=",", header=header, comments="", encoding="utf-8")
 
 

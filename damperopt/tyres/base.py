@@ -112,6 +112,8 @@ class ContactLine(Record):
     """
 
     GROUP: ClassVar[str] = "damperopt.contact_lines"
+    STATES: ClassVar[tuple[State, ...]] = ()
+    """States of the line, of one wheel."""
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0, 1)
     """Powers of V in the linear model."""
     RATIONAL: ClassVar[bool] = True
@@ -120,8 +122,8 @@ class ContactLine(Record):
     contact: str
 
     def states(self) -> tuple[State, ...]:
-        """States of the line, of one wheel."""
-        return ()
+        """States of the line, of one wheel; a line whose numbers say how many it has says it here."""
+        return self.STATES
 
     def slips(self, wheel: Wheel, linear: Linear, x: Sequence[Expr]) -> Any:
         """Rates of the states and the slip angles.

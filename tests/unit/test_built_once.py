@@ -97,7 +97,7 @@ def test_no_plain_function_of_a_design_simulates(main_gear_with_decay, builds):
     kick = {"requirements__limit_event": "simulated", "requirements__decay__kick": {"yaw_rate": 0.5}}
     study = main_gear_with_decay.replace(**kick, requirements__decay__release=None)
     sized = problem.DesignProblem(study)
-    for name in ("mass", "parts", "rows", "values", "limit_event", "rod_diameter"):
+    for name in ("mass", "parts", "rows", "values", "limit_event", "least_sizes"):
         with pytest.raises(ValueError, match="simulated_factors"):
             getattr(sized, name)(DESIGN)
     peaks = sized.limit_event(DESIGN, problem.ESTIMATED)

@@ -16,16 +16,15 @@ __all__ = ["LeadingPoint"]
 class LeadingPoint(ContactLine):
     """A string led by its foremost contact point; what that point laid down is forgotten at once (straight tangent)."""
 
+    STATES: ClassVar = (State("string_deflection", "m", "string"),)
     SPEED_POWERS: ClassVar = (0, 1)
 
     contact: Literal["leading_point"]
 
-    def states(self) -> tuple[State, ...]:
-        """The deflection y of the leading point against the wheel plane."""
-        return (State("string_deflection", "m", "string"),)
-
     def slips(self, wheel: Wheel, linear: Linear, x: Sequence[Expr]) -> Slips:
-        """The leading point y + eta + a sin(theta) stays on the ground but for what the string gives way; thesis (2-14).
+        """y is the deflection of the leading point against the wheel plane.
+
+        The leading point y + eta + a sin(theta) stays on the ground but for what the string gives way; thesis (2-14).
 
         y' = V sin(theta) - (V/sigma) y cos(theta) - d/dt(eta + a sin(theta)); both slip angles are atan(y/sigma).
         """

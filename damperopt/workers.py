@@ -5,12 +5,15 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .errors import ConfigError
+from . import interrupts
+from .errors import ConfigError, DamperoptError
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -38,20 +41,71 @@ def executor(workers: int) -> Iterator[Executor | None]:
             yield pool
 
 
+class WorkersLost(DamperoptError, BrokenExecutor):
+    """Worker processes died, or no new ones can be started."""
+
+
+class _Pool(ProcessPoolExecutor):
+    """Says in one way that there are no workers, whatever part of their machinery was killed."""
+
+    def submit(self, fn: Callable[..., Any], /, *given: Any, **named: Any) -> Future:
+        try:
+            return super().submit(fn, *given, **named)
+        except (EOFError, OSError) as error:  # of the fork server's socket
+            raise BrokenProcessPool(f"no worker process can be started ({error})") from error
+
+
 @contextmanager
 def process_pool(workers: int) -> Iterator[Executor]:
-    """Pool of worker processes; an interrupt ends them at once."""
+    """Pool of worker processes, which end with this one; an interrupt ends them at once.
+
+    Parameters
+    ----------
+    workers : int
+
+    Yields
+    ------
+    Executor
+
+    Raises
+    ------
+    WorkersLost
+        If a worker died.
+    """
+    interrupts.begin()
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods:
         context.set_forkserver_preload(["damperopt.design"])  # casadi is imported once, not once per worker
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_ignore_interrupt)
+        _start_fork_server()
+    pool = _Pool(workers, mp_context=context, initializer=_start_worker)
     try:
         yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
+    except BaseException as error:
+        _kill(pool)
+        if isinstance(error, BrokenExecutor) and not isinstance(error, WorkersLost):
+            raise WorkersLost("the worker processes died (out of memory, or killed); fewer of them: --workers") from error
         raise
     pool.shutdown()
+
+
+def _start_fork_server() -> None:
+    """Start it deaf to Ctrl-C, which a terminal sends to all: it would die of one while it imports."""
+    from multiprocessing import forkserver
+
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _kill(pool: ProcessPoolExecutor) -> None:
+    """End the workers in the middle of their work; without it the interpreter waits for them at its end."""
+    processes = list((getattr(pool, "_processes", None) or {}).values())  # public from Python 3.14 on: kill_workers
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        process.kill()
 
 
 @contextmanager
@@ -80,5 +134,21 @@ def _client(address: str) -> Client:
         ) from None
 
 
-def _ignore_interrupt() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+def _start_worker() -> None:
+    """Ctrl-C is the parent's to handle; without a parent there is nothing to work for."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    if hasattr(os, "O_ASYNC"):  # the pipe from the parent kills when it is closed, whatever library is at work
+        import fcntl
+
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: Any) -> None:
+    parent.join()
+    os._exit(1)

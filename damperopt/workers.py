@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from . import interrupts
@@ -18,7 +21,19 @@ from .errors import ConfigError, DamperoptError
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["cluster", "cluster_size", "cores", "executor", "process_pool"]
+__all__ = [
+    "SchedulerLost",
+    "WorkersLost",
+    "check_cluster",
+    "cluster",
+    "cluster_size",
+    "cores",
+    "executor",
+    "process_pool",
+]
+
+PATIENCE = 60.0
+"""Seconds of silence after which a scheduler counts as lost, though its connection stands."""
 
 
 def cores() -> int:
@@ -108,11 +123,52 @@ def _kill(pool: ProcessPoolExecutor) -> None:
         process.kill()
 
 
+class SchedulerLost(DamperoptError):
+    """The scheduler of a cluster no longer answers."""
+
+
+class _Cluster(Executor):
+    """Executor of a Dask cluster that can say whether its scheduler is still there."""
+
+    def __init__(self, client: Client):
+        self._client, self._inner = client, client.get_executor(pure=False)
+        self._answered = time.monotonic()
+        self._question: Future | None = None
+
+    def submit(self, fn: Callable[..., Any], /, *given: Any, **named: Any) -> Future:
+        self.check()
+        return self._inner.submit(fn, *given, **named)
+
+    def check(self) -> None:
+        """Raise `SchedulerLost` where the connection is lost, or nothing has been heard for `PATIENCE`."""
+        now = time.monotonic()
+        if self._question is None and now - self._answered > PATIENCE / 10:
+            loop: Any = self._client.loop
+            self._question = asyncio.run_coroutine_threadsafe(self._client.scheduler.identity(), loop.asyncio_loop)
+        elif self._question is not None and self._question.done():
+            if self._question.exception() is None:
+                self._answered = now
+            self._question = None
+        if self._client.status != "running" or now - self._answered > PATIENCE:
+            raise SchedulerLost(f"scheduler lost ({self._client.scheduler.address})")
+
+
 @contextmanager
 def cluster(address: str) -> Iterator[Executor]:
-    """Executor of a running Dask cluster, which runs the tasks of a worker that dies on another."""
+    """Executor of a running Dask cluster, which runs the tasks of a worker that dies on another.
+
+    Parameters
+    ----------
+    address : str
+        ``tcp://HOST:PORT``, or ``tls://HOST:PORT`` with keys from Dask's own configuration.
+
+    Yields
+    ------
+    Executor
+        Raises `SchedulerLost` from ``submit`` and ``check`` where the scheduler is gone.
+    """
     with _client(address) as client:
-        yield client.get_executor(pure=False)
+        yield _Cluster(client)
 
 
 def cluster_size(address: str) -> int:
@@ -121,17 +177,66 @@ def cluster_size(address: str) -> int:
         return max(sum(client.nthreads().values()), 1)
 
 
-def _client(address: str) -> Client:
+def check_cluster(address: str, parts: Callable[[], dict[str, str]]) -> None:
+    """See that scheduler and workers run what this process runs.
+
+    Parameters
+    ----------
+    address : str
+    parts : callable
+        Name and version of what must be equal, here and on each worker; it is called on both.
+
+    Raises
+    ------
+    ConfigError
+        One message for each that differs.
+    """
+    here = parts()
+    with _client(address) as client:
+        known: Any = client.get_versions(check=False)
+        problems = [
+            f"--scheduler: {address} runs {name} {theirs}, this process {ours}; allowed: the same version"
+            for name in ("distributed", "python")
+            if (theirs := _release(known["scheduler"], name)) != (ours := _release(known["client"], name))
+        ]
+        for worker, theirs in client.run(parts, on_error="return").items():
+            if not isinstance(theirs, dict):
+                problems.append(f"--scheduler: worker {worker} cannot run damperopt ({theirs}); allowed: one with this version")
+                continue
+            for name in sorted(set(here) | set(theirs)):
+                if here.get(name) != theirs.get(name):
+                    problems.append(
+                        f"--scheduler: worker {worker} runs {name} {theirs.get(name)}, this process {here.get(name)}; "
+                        "allowed: the same version"
+                    )
+    if problems:
+        raise ConfigError(problems)
+
+
+def _release(found: dict[str, Any], name: str) -> str:
+    if name == "python":
+        return ".".join(found["host"]["python"].split(".")[:2])
+    return str(found["packages"][name])
+
+
+@contextmanager
+def _client(address: str) -> Iterator[Client]:
     try:
         from distributed import Client
     except ImportError:
         raise ConfigError("--scheduler: needs Dask, which is not installed; pip install 'damperopt[cluster]'") from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it says of a lost scheduler is said here, once
     try:
-        return Client(address, timeout=10)
+        client = Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise ConfigError(
             f"--scheduler: {address}: no scheduler answers ({error}); allowed: tcp://HOST:PORT of a running one"
         ) from None
+    try:
+        yield client
+    finally:
+        with suppress(TimeoutError, OSError):
+            client.close(timeout=2)
 
 
 def _start_worker() -> None:

@@ -127,7 +127,11 @@ def write_run(folder: Path, write: Callable[[Path], None], *, hold: bool = True)
         came: list[int] = []
         try:
             found.staging.mkdir(parents=True, exist_ok=True)  # somebody may have tidied up meanwhile
-            with interrupts.held("interrupted: writing the results; once more to drop them") if hold else nullcontext(came) as came:
+            with (
+                interrupts.held("interrupted: writing the results; once more to drop them")
+                if hold
+                else nullcontext(came) as came
+            ):
                 write(found.staging)
                 place = found.finish()
         finally:

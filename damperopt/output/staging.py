@@ -9,7 +9,8 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -19,7 +20,7 @@ try:
 except ImportError:  # Windows: no locks; what was left over stays
     fcntl = None  # type: ignore[assignment]  # the only way to say that a module is missing
 
-__all__ = ["PREFIX", "Claim", "claim", "lock", "occupied", "sweep_up", "unlock"]
+__all__ = ["PREFIX", "Claim", "claim", "lock", "occupied", "staged", "sweep_up", "unlock"]
 
 PREFIX = ".damperopt-"
 
@@ -171,3 +172,30 @@ def sweep_up(place: Path) -> None:
             if descriptor is not None and descriptor >= 0:
                 shutil.rmtree(staging, ignore_errors=True)
                 unlock(descriptor)
+
+
+@contextmanager
+def staged(folder: Path) -> Iterator[Path]:
+    """A folder whose files go into an existing one when all of them are whole.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Yields
+    ------
+    Path
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    found = claim(folder)
+    if found is None:
+        raise BlockingIOError(11, "another run is writing there", str(folder))
+    try:
+        yield found.staging
+        found.finish()
+    finally:
+        found.release()

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from importlib.metadata import version
-from typing import Annotated, Any
+from typing import Annotated
 
-import typer
+from . import interrupts
 
-from .commands import analyse, chart, init, optimise, report, schema, simulate, sweep, thesis, validate
-from .commands.shared import err, out, pressed
-from .errors import DamperoptError
+with interrupts.at_once():
+    import typer
+
+    from .commands import analyse, chart, init, optimise, report, schema, simulate, sweep, thesis, validate
+    from .commands.shared import err, out
+    from .errors import DamperoptError
 
 __all__ = ["app", "main"]
 
@@ -27,23 +29,46 @@ for command in (optimise, report, analyse, simulate, chart, sweep, thesis, valid
     app.command()(command)
 
 
-def _interrupt(number: int, frame: Any) -> None:
-    pressed.append(number)
-    raise KeyboardInterrupt
-
-
 def main() -> None:
     """Entry point of the command ``damperopt``."""
-    signal.signal(signal.SIGINT, _interrupt)
+    interrupts.listen()
     os.environ.setdefault("MPLBACKEND", "Agg")  # figures go to files, in worker processes too
+    try:
+        code = _run()
+    except KeyboardInterrupt:
+        code = _interrupted("")
+    interrupts.end()
+    sys.exit(code)
+
+
+def _run() -> int:
+    """Run the command of the command line; its exit code."""
     try:
         app()
     except DamperoptError as error:
+        if interrupts.heard():
+            return _interrupted(str(error))
         err.print(str(error), markup=False, soft_wrap=True)
-        sys.exit(error.exit_code)
+        return error.exit_code
+    except SystemExit as end:
+        if interrupts.heard():
+            return _interrupted("")
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
+        return 1
+    except Exception:  # a library turns an interrupt into an error of its own now and then
+        if not interrupts.heard():
+            raise
+        return _interrupted("")
+    return 0
+
+
+def _interrupted(words: str) -> int:
+    """Say it; the exit code tells Ctrl-C from SIGTERM."""
+    interrupts.answered()
+    err.print(words or "interrupted", markup=False, soft_wrap=True)
+    return interrupts.exit_code()
 
 
 def _show_version(wanted: bool) -> None:

@@ -335,6 +335,7 @@ def _checked(
             "message": message,
             "design": solution.design,
             "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design, factors)},
+            "units": problem.units | {"torsional_stiffness": "N m/rad", "torsional_damping": "N m s/rad"},
             "limit_event": event,
             "mass": MassResult(total=mass, parts=parts),
             "stability": worst,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import subprocess
+from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -11,7 +12,34 @@ from pathlib import Path
 from .results import Provenance
 from .study.study import Study
 
-__all__ = ["provenance_of"]
+__all__ = ["own_version", "program", "program_parts", "provenance_of"]
+
+PACKAGES = ("casadi", "numpy", "scipy", "python-flint", "pydantic")
+"""Whose versions may change a number."""
+
+
+def own_version() -> str:
+    """Version of damperopt."""
+    try:
+        return version("damperopt")
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return "unknown"
+
+
+@cache
+def program() -> str:
+    """Version and source of this program in one word: what two processes must share for their numbers to be of one kind."""
+    digest = sha256()
+    root = Path(__file__).parent
+    for file in sorted(root.rglob("*.py")):
+        digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes())
+    return f"{own_version()}+{digest.hexdigest()[:16]}"
+
+
+def program_parts() -> dict[str, str]:
+    """The program with what it stands on, by name: `program`, Python, and the packages that may change a number."""
+    python = ".".join(platform.python_version_tuple()[:2])
+    return {"damperopt": program(), "python": python} | {name: version(name) for name in PACKAGES}
 
 
 def provenance_of(study: Study, config_file: str | Path | None, started: str, wall_time: float) -> Provenance:
@@ -31,14 +59,10 @@ def provenance_of(study: Study, config_file: str | Path | None, started: str, wa
     -------
     Provenance
     """
-    packages = {name: version(name) for name in ("casadi", "numpy", "scipy", "python-flint", "pydantic")}
-    try:
-        own = version("damperopt")
-    except PackageNotFoundError:  # run from a checkout that is not installed
-        own = "unknown"
+    packages = {name: version(name) for name in PACKAGES}
     text = Path(config_file).read_bytes() if config_file and Path(config_file).is_file() else study.model_dump_json().encode()
     return Provenance(
-        damperopt=own,
+        damperopt=own_version(),
         python=platform.python_version(),
         packages=packages,
         config_file=str(config_file) if config_file else None,

@@ -16,7 +16,6 @@ from .reading import MOST_RESULT_BYTES, printable, text_of
 
 __all__ = [
     "SCHEMA_VERSION",
-    "UNITS",
     "Certificate",
     "ConstraintResult",
     "DecayCheck",
@@ -34,19 +33,6 @@ __all__ = [
 ]
 
 SCHEMA_VERSION = 1
-
-UNITS = {
-    "c_lambda": "N s/m",
-    "k_lambda": "N/m",
-    "I_arm": "m^4",
-    "L": "m",
-    "gamma": "rad",
-    "b": "m",
-    "rod_diameter": "m",
-    "torsional_stiffness": "N m/rad",
-    "torsional_damping": "N m s/rad",
-}
-"""SI unit of each number of `DesignResult.design` and `DesignResult.derived`."""
 
 _FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
 """What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""
@@ -267,7 +253,8 @@ class DesignResult(_Record):
     """Answer to one study.
 
     `status`: ``solved`` (and verified), ``infeasible`` (no design meets the requirements) or ``failed`` (the solver or the
-    verification did not succeed); `message` says it in words. Design variables and derived numbers are in SI, see `UNITS`.
+    verification did not succeed); `message` says it in words. Design variables and derived numbers are in SI, their
+    units in `units`.
     `limit_event` holds the peaks that size the parts [SI]. `decided_by` says what the mass hangs on: per cent of mass for one
     per cent of the limits of each kind of constraint.
     """
@@ -282,6 +269,7 @@ class DesignResult(_Record):
     stability_margin: float
     design: dict[str, float] = {}
     derived: dict[str, float] = {}
+    units: dict[str, str] = {}
     limit_event: dict[str, float] = {}
     mass: MassResult | None = None
     stability: OperatingPoint | None = None
@@ -335,7 +323,7 @@ class DesignResult(_Record):
         """The answer as notebooks show it."""
         mass = "" if self.mass is None else f": <b>{self.mass.total:.3f} kg</b>"
         title = f"{escape(self.status)}{mass}, {escape(self.topology)} ({escape(self.geometry)}), {escape(self.material)}"
-        rows = [(name, f"{value:.5g}", UNITS[name]) for name, value in (self.design | self.derived).items()]
+        rows = [(name, f"{value:.5g}", self.units.get(name, "")) for name, value in (self.design | self.derived).items()]
         rows += [(f"mass of {part}", f"{value:.3f}", "kg") for part, value in (self.mass.parts if self.mass else {}).items()]
         cells = "".join(f"<tr><th>{escape(name)}</th><td>{value}</td><td>{unit}</td></tr>" for name, value, unit in rows)
         return f"<p>{title}</p><p>{escape(self.message)}</p><table>{cells}</table>"

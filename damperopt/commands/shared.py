@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -16,12 +18,14 @@ from rich.progress import (
     Progress,
     ProgressColumn,
     Task,
+    TaskID,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
 from rich.text import Text
 
+from .. import interrupts
 from ..errors import ConfigError, Interrupted
 from ..results import DesignResult, load_result
 from ..study import config
@@ -36,13 +40,15 @@ __all__ = [
     "bar",
     "err",
     "out",
-    "pressed",
     "progress",
     "study_and_design",
     "workers_for",
 ]
 
 FEW_STARTS = 24
+
+SECONDS_A_LINE = 5.0
+"""Between two lines of progress where there is no terminal."""
 
 # no emoji: 5:100:1 is a range of speeds
 out, err = Console(highlight=False, emoji=False), Console(stderr=True, highlight=False, emoji=False)
@@ -56,20 +62,20 @@ DesignOption = Annotated[
 ]
 
 
-pressed: list[int] = []
-"""Ctrl-C that was pressed: now and then a library swallows the exception, and its answer must not pass for a whole one."""
-
-
 @contextmanager
 def all_or_nothing() -> Iterator[None]:
     """Work that leaves nothing behind when it is interrupted."""
+    interrupts.begin()
     try:
         yield
-    except (KeyboardInterrupt, SystemError):  # the latter where a wrapped library was interrupted between two calls
-        if not pressed:
+        interrupts.check()  # an interrupt that was swallowed: the answer must not pass for a whole one
+    except Interrupted:
+        raise
+    except BaseException as error:  # where a wrapped library was interrupted, it raises what it likes
+        if not (interrupts.heard() or isinstance(error, KeyboardInterrupt)):
             raise
-    if pressed:
-        raise Interrupted("interrupted; nothing was written")
+        interrupts.answered()
+        raise Interrupted("interrupted; nothing was written") from None
 
 
 class _RateColumn(ProgressColumn):
@@ -79,9 +85,56 @@ class _RateColumn(ProgressColumn):
         return Text("" if task.speed is None else f"{60 * task.speed:.3g}/min")
 
 
+class _Lines:
+    """Progress where no terminal shows a bar: a line every few seconds, none for short work."""
+
+    def __init__(self) -> None:
+        self._words, self._done = "", 0.0
+        self._total: float | None = None
+        self._ended, self._clock = threading.Event(), time.monotonic()
+        self._thread = threading.Thread(target=self._print, daemon=True)
+        self._thread.start()
+
+    def add_task(self, description: str, total: float | None = None, completed: float = 0) -> TaskID:
+        self._words, self._done, self._total = description, completed, total
+        return TaskID(0)
+
+    def update(
+        self,
+        task: TaskID,
+        *,
+        advance: float = 0,
+        completed: float | None = None,
+        total: float | None = None,
+        description: str | None = None,
+    ) -> None:
+        self._done = self._done + advance if completed is None else completed
+        self._total = self._total if total is None else total
+        self._words = description or self._words
+
+    def _print(self) -> None:
+        while not self._ended.wait(SECONDS_A_LINE):
+            of = "" if self._total is None else f" of {self._total:g}"
+            words = f"{self._words}: {self._done:g}{of}, {time.monotonic() - self._clock:.0f} s"
+            with suppress(OSError):  # nobody reads it
+                err.print(words, markup=False, soft_wrap=True)
+
+    def end(self) -> None:
+        self._ended.set()
+        self._thread.join()
+
+
 @contextmanager
-def bar() -> Iterator[Progress]:
-    """Progress on the error stream, gone when done."""
+def bar() -> Iterator[Progress | _Lines]:
+    """Progress on the error stream: a bar that is gone when done, or, without a terminal, a line every few seconds."""
+    interrupts.begin()
+    if not err.is_terminal:
+        lines = _Lines()
+        try:
+            yield lines
+        finally:
+            lines.end()
+        return
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -101,6 +154,7 @@ def progress() -> Iterator:
         task = shown.add_task("starting", total=None)
 
         def report(done: int, total: int, study: Study) -> None:
+            interrupts.check()
             shown.update(task, completed=done, total=total, description=f"{study.damper.topology}, {study.material.name}")
 
         yield report

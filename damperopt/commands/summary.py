@@ -13,8 +13,9 @@ from rich.table import Table
 from ..charts.chart import StabilityChart
 from ..literature.arreaza2015 import Row
 from ..motion.trajectory import Motion, Trajectory
-from ..results import UNITS, Certificate, DesignResult, OperatingPoint
+from ..results import Certificate, DesignResult, OperatingPoint
 from ..stability.critical import CriticalSpeed
+from ..study.components import unit_of_name
 from ..study.study import Study
 
 __all__ = ["show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
@@ -45,7 +46,7 @@ def show_design(console: Console, result: DesignResult) -> None:
     console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
     table = _table("design variable", "value", "unit")
     for name, value in (result.design | result.derived).items():
-        table.add_row(name, *_number(value, UNITS[name]))
+        table.add_row(name, *_number(value, unit_of_name(name, result.units)))
     console.print(table)
     table = _table("constraint", "value", "limit", "unit", "kg per unit of the limit")
     for c in result.constraints:
@@ -136,7 +137,7 @@ def show_analysis(
     """Critical speeds, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
     if design:
-        text = ", ".join(" ".join((name, *_number(value, UNITS[name]))) for name, value in design.items())
+        text = ", ".join(" ".join((name, *_number(value, unit_of_name(name)))) for name, value in design.items())
         console.print(text, soft_wrap=True)
     if critical:
         table = _table("critical speed", "load", "kind", "frequency", "root", "gear")

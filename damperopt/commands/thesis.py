@@ -22,6 +22,6 @@ def thesis(output: OutputOption = None) -> None:
         def on_panel(number: str) -> None:
             shown.update(task, advance=1, description=f"figure {number}")
 
-        write_run(folder, lambda place: rows.extend(write_thesis(place, study, pool, on_panel)))
+        write_run(folder, lambda place: rows.extend(write_thesis(place, study, pool, on_panel)), hold=False)
     summary.show_claims(out, rows)
     out.print(f"\nOpen {folder / 'index.html'}", soft_wrap=True)

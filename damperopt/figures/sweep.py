@@ -8,16 +8,19 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..sweep.run import PointRecord
-from ..sweep.spec import Sweep
+from ..sweep.grid import Sweep
+from ..sweep.records import PointRecord
 from .style import styled
 
 __all__ = ["sweep_figure"]
 
 BLOCKS = ("gear", "tyre", "damper", "envelope", "requirements")
 
-MARKS = ("solved", "stable", "unstable")
+MARKS = ("solved", "stable", "margin missed", "unstable")
 """Whose numbers are shown."""
+
+MOST_BARS, MOST_CURVES = 60, 24
+"""What can still be told apart."""
 
 
 def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
@@ -34,7 +37,7 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
     matplotlib Figure
     """
     name, label = ("mass", "Mass [kg]") if sweep.run == "optimise" else ("abscissa", "Spectral abscissa [1/s]")
-    rows = [(point.values, records.get(point.index)) for point in sweep.points]
+    rows = ((point.values, records.get(point.index)) for point in sweep.points)
     points = [
         (values, record.numbers.get(name, np.nan) if record and record.status in MARKS else np.nan) for values, record in rows
     ]
@@ -50,8 +53,15 @@ def sweep_figure(sweep: Sweep, records: Mapping[int, PointRecord]) -> Any:
         else:
             figure = _bars(sweep, points, label)
         lost = sum(not np.isfinite(value) for _, value in points)
-        figure.suptitle(f"{sweep.name}: {len(points)} points" + (f", {lost} without a value" if lost else ""), fontsize=10)
+        figure.suptitle(
+            f"{_plain(sweep.name)}: {len(points)} points" + (f", {lost} without a value" if lost else ""), fontsize=10
+        )
         return figure
+
+
+def _plain(text: str) -> str:
+    """Text in which a dollar sign is one and begins no formula."""
+    return text.replace("$", r"\$")
 
 
 def _words(sweep: Sweep, key: str) -> str:
@@ -64,7 +74,7 @@ def _words(sweep: Sweep, key: str) -> str:
 
 def _value(sweep: Sweep, key: str, value: float | str) -> str:
     if isinstance(value, str):
-        return value
+        return _plain(value)
     unit = sweep.units.get(key, "")
     return f"{key.split('.')[-1].replace('_', ' ')} {value:.4g}" + (f" {unit}" if unit not in ("", "1") else "")
 
@@ -80,7 +90,7 @@ def _curves(sweep: Sweep, points: list, key: str, label: str) -> Any:
         words = ", ".join(_value(sweep, other, value) for other, value in zip(others, family, strict=True))
         axis.plot(*np.array(curve).T, "o-", ms=4, color=colour, label=words or None)
     axis.set(xlabel=_words(sweep, key), ylabel=label)
-    if others:
+    if others and len(families) <= MOST_CURVES:
         figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=9)
     return figure
 
@@ -103,14 +113,14 @@ def _map(sweep: Sweep, points: list, label: str) -> Any:
 
 
 def _bars(sweep: Sweep, points: list, label: str) -> Any:
-    ordered = sorted(points, key=lambda point: (not np.isfinite(point[1]), point[1]))
+    ordered = sorted(points, key=lambda point: (not np.isfinite(point[1]), point[1]))[:MOST_BARS]
     figure, axis = plt.subplots(figsize=(7.5, 1.2 + 0.3 * len(ordered)))
-    names = [", ".join(str(value) for value in values.values()) for values, _ in ordered]
+    names = [_plain(", ".join(str(value) for value in values.values())) for values, _ in ordered]
     found = np.array([value for _, value in ordered])
     bars = axis.barh(names, np.nan_to_num(found), color="#0b6e99")
     axis.bar_label(bars, [f"{v:.3f}" if np.isfinite(v) else "no design" for v in found], padding=3, fontsize=8)
     axis.invert_yaxis()
-    axis.set(xlabel=label)
+    axis.set(xlabel=label if len(ordered) == len(points) else f"{label}, the lowest {MOST_BARS}")
     axis.margins(x=0.12)
     axis.grid(axis="y", visible=False)
     return figure

@@ -18,6 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from .. import interrupts
 from ..expressions.dae import DAE, eliminate
 
 __all__ = ["ENGINES", "NEWTON_STEPS", "Integrator", "best_engine", "has_compiler"]
@@ -177,8 +178,9 @@ class Integrator:
             arguments["z0"] = z0
         try:
             result = self._function(**arguments)
-        except NotImplementedError as error:  # a Ctrl-C while CasADi looks for the overload of a call
-            raise KeyboardInterrupt from error
+        except NotImplementedError:
+            interrupts.check()  # a Ctrl-C while CasADi looks for the overload of a call comes out as a wrong type
+            raise
         except RuntimeError as error:
             raise FloatingPointError(f"{self.engine} cannot go on") from error
         columns = result["xf"].full()

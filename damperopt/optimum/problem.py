@@ -63,6 +63,8 @@ class DesignProblem:
         Design variables, then the sizes of parts that are chosen with them.
     constraints : tuple of Constraint
         Strength and geometry, in the order of `rows`.
+    units : dict of str to str
+        SI units of the variables.
     has_one_damping, plain : bool
         Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own.
     shifted_matrix : casadi.Function
@@ -88,6 +90,7 @@ class DesignProblem:
             strength(symbols.study, design, sized) + geometry(symbols.study, design, link, sized)
         )
         self.size_names = tuple(size.name for size in sized.sizes)
+        self.units = {v.name: v.unit for v in study.variables} | {size.name: size.unit for size in sized.sizes}
         self.part_names = tuple(parts)
         self.constraint_names = tuple(c.name for c in self.constraints)
         own = ca.vertcat(ca.SX(0, 1), *(size.symbol for size in sized.sizes))

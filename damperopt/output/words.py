@@ -134,7 +134,9 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
-        lines.append(Line((meanings.get(name) or name, name, *shown(value, unit_of_name(name)), bounds), bool(bounds)))
+        lines.append(
+            Line((meanings.get(name) or name, name, *shown(value, unit_of_name(name, result.units)), bounds), bool(bounds))
+        )
     return lines
 
 

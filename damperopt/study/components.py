@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -14,7 +15,18 @@ from ..quantities.record import refuse
 from ..tyres.assembly import contact_lines, slip_laws, tyre_type
 from ..tyres.base import Tyre
 
-__all__ = ["DAMPER", "GEAR", "ORDERS", "TYRE", "design_variables", "gears", "optimisable", "rooms", "unit_of_name"]
+__all__ = [
+    "DAMPER",
+    "GEAR",
+    "ORDERS",
+    "TYRE",
+    "declared_units",
+    "design_variables",
+    "gears",
+    "optimisable",
+    "rooms",
+    "unit_of_name",
+]
 
 
 def gears() -> dict[str, type[Gear]]:
@@ -97,7 +109,8 @@ DERIVED = {
 
 
 @cache
-def _declared() -> dict[str, str]:
+def declared_units() -> dict[str, str]:
+    """SI unit of every design variable, state and output that a component declares, and of what follows from them."""
     units = dict(DERIVED) | {name: variable.unit for name, variable in design_variables().items()}
     named: list[Any] = [*CHAIN_STATES, *OUTPUTS, *ROTARY_OUTPUTS, *Tyre.OUTPUTS]
     for kind in (kind for room in rooms().values() for kind in room.values()):
@@ -105,12 +118,18 @@ def _declared() -> dict[str, str]:
     return units | {quantity.name: quantity.unit for quantity in named}
 
 
-def unit_of_name(name: str) -> str:
+def unit_of_name(name: str, given: Mapping[str, str] | None = None) -> str:
     """SI unit of a design variable, state or output by its name, as the component that has it declares it.
+
+    Parameters
+    ----------
+    name : str
+    given : mapping of str to str or None
+        Units that a result or a motion brings along; they come first.
 
     Raises
     ------
     KeyError
         If none declares it.
     """
-    return _declared()[name]
+    return (given or {}).get(name) or declared_units()[name]

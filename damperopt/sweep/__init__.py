@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from .dataset import dataset
+from .dataset import dataset, table
+from .grid import Point, Points, Sweep
 from .points import run_point
-from .run import PointRecord, run_sweep, stored_records
-from .spec import Point, Sweep, load_sweep, sweep_of
+from .records import PointRecord, stored_records
+from .run import run_sweep
+from .spec import load_sweep, sweep_of
 
 __all__ = [
     "Point",
     "PointRecord",
+    "Points",
     "Sweep",
     "dataset",
     "load_sweep",
@@ -17,4 +20,5 @@ __all__ = [
     "run_sweep",
     "stored_records",
     "sweep_of",
+    "table",
 ]

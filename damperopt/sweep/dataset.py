@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .run import PointRecord
-from .spec import Sweep
+from ..study.components import declared_units
+from .grid import Sweep
+from .records import PointRecord
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
-__all__ = ["dataset"]
+__all__ = ["dataset", "table"]
 
 UNITS = {
     "mass": "kg",
@@ -46,21 +48,20 @@ def dataset(sweep: Sweep, records: Mapping[int, PointRecord], provenance: Mappin
     """
     import xarray
 
-    from ..results import UNITS as DESIGN_UNITS
-
     sampled = sweep.count > 1 or bool(sweep.sampled)
     dims = (*map(_name, sweep.axes), *(("sample",) if sampled else ()))
     shape = (*(len(values) for values in sweep.axes.values()), *((sweep.count,) if sampled else ()))
-    units = UNITS | DESIGN_UNITS
     names = list(dict.fromkeys(name for record in records.values() for name in record.numbers))
 
     def grid(values: list[Any]) -> np.ndarray:
         return np.array(values).reshape(shape)
 
     def attributes(name: str) -> dict[str, str]:
-        return {"units": units.get(name, "kg" if name.startswith("mass_") else "1")}
+        if name in UNITS or name.startswith("mass_"):
+            return {"units": UNITS.get(name, "kg")}
+        return {"units": declared_units().get(name, "1")}
 
-    rows = [records.get(point.index) for point in sweep.points]
+    rows = [records.get(index) for index in range(len(sweep.points))]
     variables: dict[str, Any] = {
         name: (dims, grid([r.numbers.get(name, np.nan) if r else np.nan for r in rows]), attributes(name)) for name in names
     }
@@ -73,9 +74,30 @@ def dataset(sweep: Sweep, records: Mapping[int, PointRecord], provenance: Mappin
         for key, values in sweep.axes.items()
     }
     for key in sweep.sampled:
-        values = [point.values[key] for point in sweep.points[: sweep.count]]
-        coordinates[_name(key)] = ("sample", values, {"units": sweep.units[key], "key": key})
+        coordinates[_name(key)] = ("sample", sweep.points.draws[key], {"units": sweep.units[key], "key": key})
     return xarray.Dataset(variables, coordinates, {"name": sweep.name, "run": sweep.run, **(provenance or {})})
+
+
+def table(found: xarray.Dataset) -> pandas.DataFrame:
+    """A dataset's numbers without eigenvalues, a row for each point; units stand behind the names, in brackets.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of `dataset`.
+
+    Returns
+    -------
+    pandas.DataFrame
+    """
+    rows = found.drop_vars([name for name in found.data_vars if str(name).startswith("eigenvalue_")]).to_dataframe()
+
+    def header(name: Any) -> str:
+        unit = found[name].attrs.get("units", "") if name in found.variables else ""
+        return f"{name} [{unit}]" if unit not in ("", "1") else str(name)
+
+    rows.index = rows.index.set_names([header(name) for name in rows.index.names])
+    return rows.rename(columns={name: header(name) for name in rows.columns})
 
 
 def _name(key: str) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..design import optimise
 from ..errors import ConfigError
+from ..provenance import program
 from ..stability.critical import critical_speeds
 from ..stability.linear import linear_gear
 from ..stability.modes import track_modes
@@ -37,7 +38,8 @@ def run_point(study_json: str, run: str, speeds: int, start: Mapping[str, float]
     Returns
     -------
     dict
-        Plain data: ``status``, ``message``, ``seconds``, ``numbers``, ``result``, and ``modes`` with speeds and eigenvalues.
+        Plain data: ``status``, ``message``, ``seconds``, ``numbers``, ``result``, ``modes`` with speeds and eigenvalues, and
+        ``program``, which found them.
     """
     clock = time.perf_counter()
     try:
@@ -48,7 +50,7 @@ def run_point(study_json: str, run: str, speeds: int, start: Mapping[str, float]
         last = traceback.extract_tb(error.__traceback__)[-1]
         message = f"{type(error).__name__}: {error} ({last.name})"
         found = {"status": "error", "message": message, "numbers": {}, "result": None, "modes": None}
-    return found | {"seconds": time.perf_counter() - clock}
+    return found | {"seconds": time.perf_counter() - clock, "program": program()}
 
 
 def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> dict[str, Any]:
@@ -56,7 +58,9 @@ def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> 
     result = result.model_copy(update={"config": study.model_dump(mode="json")})  # the question as it was put
     numbers = dict(result.design) | {name: value for name, value in result.derived.items() if name not in result.design}
     if result.mass is not None:
-        numbers |= {"mass": result.mass.total} | {f"mass_{part}": value for part, value in result.mass.parts.items()}
+        numbers |= {"mass": result.mass.total} | {
+            f"mass_{part.replace(' ', '_')}": value for part, value in result.mass.parts.items()
+        }
     if result.stability is not None:
         numbers["abscissa"] = result.stability.abscissa
     if result.decay is not None:
@@ -65,7 +69,7 @@ def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> 
     return {
         "status": result.status,
         "message": result.message,
-        "numbers": numbers,
+        "numbers": {name: float(value) for name, value in numbers.items() if np.isfinite(value)},
         "result": result.model_dump(mode="json"),
         "modes": modes,
     }
@@ -86,9 +90,10 @@ def _analysed(study: Study, speeds: int, start: Mapping[str, float] | None) -> d
     numbers = {"abscissa": worst.abscissa, "worst_speed": worst.speed, "worst_load": worst.load}
     numbers |= {"lowest_critical_speed": min(critical, default=np.nan), "highest_critical_speed": max(critical, default=np.nan)}
     margin = study.requirements.stability_margin if study.requirements else 0.0
-    kept = worst.abscissa <= -margin
+    stable = worst.abscissa < 0
+    kept = stable and worst.abscissa <= -margin
     return {
-        "status": "stable" if kept else "unstable",
+        "status": "stable" if kept else "margin missed" if stable else "unstable",
         "message": "" if kept else f"spectral abscissa {worst.abscissa:.4g} 1/s at {worst.speed:.4g} m/s, wanted {-margin:g}",
         "numbers": {name: float(value) for name, value in numbers.items() if np.isfinite(value)},
         "result": None,

@@ -2,90 +2,28 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ..errors import OutputError
-from ..workers import cores, process_pool
+from .. import interrupts
+from ..errors import DamperoptError
+from ..provenance import program
+from ..workers import SchedulerLost, cores, process_pool
+from .grid import Point, Sweep
 from .points import run_point
-from .spec import Point, Sweep
+from .records import PointRecord, lost, store, stored_records
 
-__all__ = ["PointRecord", "run_sweep", "stored_records"]
+__all__ = ["PointRecord", "counts", "run_sweep", "stored_records"]
 
 Pool = Callable[[], AbstractContextManager[Executor]]
 
-
-@dataclass(frozen=True)
-class PointRecord:
-    """What became of a point.
-
-    Attributes
-    ----------
-    index : int
-    status : str
-        ``solved``, ``infeasible``, ``failed`` (optimise); ``stable``, ``unstable`` (analyse); ``invalid``: the values make no
-        study; ``error``: the work raised; ``crashed``: it took its process along.
-    message : str
-    numbers : dict
-        By name [SI].
-    modes : dict or None
-        Speeds [m/s] and eigenvalues [1/s].
-    result : dict or None
-        The whole `DesignResult` as plain data.
-    seconds : float
-    """
-
-    index: int
-    status: str
-    message: str
-    numbers: dict[str, float]
-    modes: dict[str, Any] | None
-    result: dict[str, Any] | None
-    seconds: float
-
-    @property
-    def good(self) -> bool:
-        """Whether the point has an answer, be it that there is no design."""
-        return self.status in ("solved", "infeasible", "stable", "unstable")
-
-
-def _file(folder: Path, index: int) -> Path:
-    return folder / "points" / f"{index:06d}.json"
-
-
-def stored_records(sweep: Sweep, folder: Path) -> dict[int, PointRecord]:
-    """Answers that an earlier run left in a folder, by index; those to other questions and failures are not among them.
-
-    Parameters
-    ----------
-    sweep : Sweep
-    folder : Path
-
-    Returns
-    -------
-    dict
-    """
-    found = {}
-    for point in sweep.points:
-        try:
-            data = json.loads(_file(folder, point.index).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            continue
-        if isinstance(data, dict) and data.pop("key", None) == sweep.key(point):
-            record = PointRecord(**data)
-            if record.good or record.status == "invalid":
-                found[point.index] = record
-    return found
+A_LOOK = 1.0
+"""Seconds between two looks at what may have happened besides a point."""
 
 
 def run_sweep(
@@ -123,54 +61,116 @@ def run_sweep(
         If a record cannot be written.
     """
     folder, in_flight = Path(folder), in_flight or cores()
-    pool = pool or partial(process_pool, in_flight)
-    records = stored_records(sweep, folder)
-    waiting: deque[Point] = deque()
-    for point in sweep.points:
-        if point.index in records:
-            continue
-        if point.study is None:
-            records[point.index] = _store(folder, sweep, point, _lost("invalid", point.problem), on_done)
-        else:
-            waiting.append(point)
-    suspects: deque[Point] = deque()
-    while waiting or suspects:
-        queue, limit = (suspects, 1) if suspects else (waiting, in_flight)
-        running: dict[Future, Point] = {}
-        try:
-            with pool() as executor:
-                while queue or running:
-                    while queue and len(running) < limit:
-                        point = queue.popleft()
-                        running[_submit(executor, sweep, point, records)] = point
-                    for future in wait(running, return_when=FIRST_COMPLETED).done:
-                        answer = _answer(future)  # raises BrokenExecutor with the point still among the running
-                        point = running.pop(future)
-                        records[point.index] = _store(folder, sweep, point, answer, on_done)
-        except BrokenExecutor:
-            if queue is suspects:
-                (point,) = running.values()
-                words = "its worker process died, twice"
-                records[point.index] = _store(folder, sweep, point, _lost("crashed", words), on_done)
-            else:
-                suspects.extend(running.values())
-    return records
-
-
-def _submit(executor: Executor, sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> Future:
-    assert point.study is not None
-    start = _neighbour(sweep, point, records) if sweep.warm_start else None
-    return executor.submit(run_point, point.study.model_dump_json(), sweep.run, sweep.eigenvalue_speeds, start)
-
-
-def _answer(future: Future) -> dict[str, Any]:
-    """Of a point; a cluster says with an exception of its own that it gave a task up."""
+    work = _Work(sweep, folder, on_done)
     try:
-        return future.result()
-    except BrokenExecutor:
+        work.all_of_it(pool or partial(process_pool, in_flight), in_flight)
+    except SchedulerLost as error:
+        kept = sum(record.good for record in work.records.values())
+        raise SchedulerLost(f"{error}; {kept} of {len(sweep.points)} points are kept in {folder}") from error
+    return work.records
+
+
+class _Work:
+    """What is done, at work and still to do."""
+
+    def __init__(self, sweep: Sweep, folder: Path, on_done: Callable[[PointRecord], Any]):
+        self._sweep, self._folder, self._on_done = sweep, folder, on_done
+        (folder / "points").mkdir(parents=True, exist_ok=True)
+        self.records = stored_records(sweep, folder)
+        self._missing = self._points()
+        self._running: dict[Future, Point] = {}
+        self._suspects: deque[Point] = deque()  # their worker died; each is tried once more, by itself
+
+    def _points(self) -> Iterator[Point]:
+        """Those that are still to be asked; one that makes no study is recorded on the way."""
+        for index in range(len(self._sweep.points)):
+            if index in self.records:
+                continue
+            point = self._sweep.points[index]
+            if point.study is None:
+                self._store(point, lost("invalid", point.problem))
+                continue
+            yield point
+
+    def all_of_it(self, pool: Pool, in_flight: int) -> None:
+        """Ask all points, with a new pool whenever one is broken."""
+        whole = False
+        while not whole or self._suspects:
+            alone = bool(self._suspects)
+            try:
+                with pool() as executor:
+                    self._ask(executor, alone, 1 if alone else in_flight)
+                whole = whole or not alone
+            except BrokenExecutor:
+                self._broken(alone)
+
+    def _ask(self, executor: Executor, alone: bool, limit: int) -> None:
+        look = getattr(executor, "check", lambda: None)  # a cluster can be lost without a word
+        try:
+            while True:
+                self._submit(executor, alone, limit)
+                if not self._running:
+                    return
+                done = wait(self._running, A_LOOK, FIRST_COMPLETED).done
+                interrupts.check()
+                look()
+                for future in done:
+                    answer = _answer(future, look)  # a broken pool: with the point still among the running
+                    self._store(self._running[future], answer)
+                    del self._running[future]
+        except KeyboardInterrupt:
+            with interrupts.held():
+                for future, point in self._running.items():
+                    if future.done() and not future.cancelled() and future.exception() is None:
+                        self._store(point, _answer(future, look))
+            raise
+
+    def _submit(self, executor: Executor, alone: bool, limit: int) -> None:
+        while len(self._running) < limit:
+            point = (self._suspects.popleft() if self._suspects else None) if alone else next(self._missing, None)
+            if point is None:
+                return
+            assert point.study is not None
+            warm = self._sweep.warm_start and self._sweep.run == "optimise"
+            start = _neighbour(self._sweep, point, self.records) if warm else None
+            question = (point.study.model_dump_json(), self._sweep.run, self._sweep.eigenvalue_speeds, start)
+            try:
+                self._running[executor.submit(run_point, *question)] = point
+            except BaseException:
+                self._running[Future()] = point  # not forgotten
+                raise
+
+    def _broken(self, alone: bool) -> None:
+        points = list(self._running.values())
+        self._running.clear()
+        if not alone:
+            self._suspects.extend(points)
+            return
+        for point in points:
+            self._store(point, lost("crashed", "its worker process died, twice"))
+
+    def _store(self, point: Point, answer: dict[str, Any]) -> None:
+        record = PointRecord(index=point.index, **answer)
+        store(self._folder, self._sweep.key(point), record)
+        self.records[point.index] = record
+        self._on_done(record)
+
+
+def _answer(future: Future, look: Callable[[], Any]) -> dict[str, Any]:
+    """Of a point; a cluster says with an exception of its own that it gave a task up, or that it is no more."""
+    try:
+        answer = future.result()
+    except (BrokenExecutor, DamperoptError):
         raise
-    except Exception as error:
-        return _lost("crashed", f"{type(error).__name__}: {error}")
+    except BaseException as error:  # a cancelled task among them
+        if isinstance(error, (KeyboardInterrupt, SystemExit)):
+            raise
+        look()
+        return lost("crashed", f"{type(error).__name__}: {error}")
+    theirs = answer.get("program", "another version") if isinstance(answer, dict) else "another program"
+    if theirs != program():
+        return lost("error", f"answered by damperopt {theirs}, this is {program()}; not believed")
+    return answer
 
 
 def _neighbour(sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> dict[str, float] | None:
@@ -180,11 +180,7 @@ def _neighbour(sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> d
     solved = [r for r in records.values() if r.status == "solved" and r.result and r.result["topology"] == layout]
     if not solved:
         return None
-    spans = {
-        key: np.ptp([float(p.values[key]) for p in sweep.points]) or 1.0
-        for key, value in point.values.items()
-        if isinstance(value, float)
-    }
+    spans = sweep.spans
 
     def distance(other: Point) -> float:
         return sum(
@@ -195,27 +191,6 @@ def _neighbour(sweep: Sweep, point: Point, records: dict[int, PointRecord]) -> d
     nearest = min(solved, key=lambda record: distance(sweep.points[record.index]))
     assert nearest.result is not None
     return nearest.result["design"]
-
-
-def _lost(status: str, message: str) -> dict[str, Any]:
-    return {"status": status, "message": message, "numbers": {}, "modes": None, "result": None, "seconds": 0.0}
-
-
-def _store(
-    folder: Path, sweep: Sweep, point: Point, answer: dict[str, Any], on_done: Callable[[PointRecord], Any]
-) -> PointRecord:
-    """Write a record so that it is whole or absent."""
-    record = PointRecord(index=point.index, **answer)
-    file = _file(folder, point.index)
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = file.with_suffix(".part")
-        unfinished.write_text(json.dumps({"key": sweep.key(point), **vars(record)}), encoding="utf-8")
-        os.replace(unfinished, file)
-    except OSError as error:
-        raise OutputError(f"{file}: cannot be written: {error.strerror}; finished points are kept") from error
-    on_done(record)
-    return record
 
 
 def counts(records: Iterable[PointRecord]) -> dict[str, int]:

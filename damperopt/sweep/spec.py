@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from hashlib import sha256
-from importlib.metadata import version
-from itertools import product
+from functools import cache
+from itertools import islice, product
+from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,10 +17,14 @@ from ..errors import ConfigError
 from ..quantities.units import Quantity
 from ..study.config import load, parsed, text_of
 from ..study.study import Study, unit_of
+from .grid import Points, Sweep, study_or_problem
 
-__all__ = ["Point", "Sweep", "load_sweep", "sweep_of"]
+__all__ = ["load_sweep", "sweep_of"]
 
 MOST_POINTS = 1_000_000
+
+FEW = 100
+"""Combinations in which a name is tried that is not valid by itself."""
 
 
 class _Record(BaseModel):
@@ -88,7 +91,7 @@ class SweepSpec(_Record):
     """A grid: a list of values or a range {from, to, points} for each key path."""
     samples: Samples | None = None
     """Points drawn over key paths, at every point of the grid."""
-    warm_start: bool = True
+    warm_start: Annotated[bool, Field(strict=True)] = True
     """Whether a point also starts from the design of a finished neighbour."""
     eigenvalue_speeds: Annotated[int, Field(strict=True, ge=2, le=10_000)] = 40
     """Speeds at which eigenvalues are stored."""
@@ -98,68 +101,6 @@ class SweepSpec(_Record):
         if not self.vary and self.samples is None:
             raise ValueError("nothing is varied; give vary (lists and ranges by key) or samples")
         return self
-
-
-@dataclass(frozen=True)
-class Point:
-    """A study of a sweep.
-
-    Attributes
-    ----------
-    index : int
-    values : dict
-        Of what is varied, by key path: numbers [SI] or names.
-    study : Study or None
-        None where the values make none.
-    problem : str
-        Why they do not.
-    """
-
-    index: int
-    values: dict[str, float | str]
-    study: Study | None
-    problem: str = ""
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """A sweep that can be run.
-
-    Attributes
-    ----------
-    name : str
-    run : str
-        ``optimise`` or ``analyse``.
-    axes : dict
-        Values of each key of the grid, in order; empty without one.
-    sampled : tuple of str
-        Keys that are sampled.
-    count : int
-        Samples for every point of the grid; 1 without samples.
-    points : tuple of Point
-        The grid in the order of the axes, the last one fastest; samples within.
-    warm_start : bool
-        Whether a point takes its nearest finished neighbour's design for the study's own start; the other starts stay.
-    eigenvalue_speeds : int
-        Speeds at which eigenvalues are stored.
-    units : dict
-        SI unit of each key with numbers.
-    """
-
-    name: str
-    run: str
-    axes: dict[str, tuple[float | str, ...]]
-    sampled: tuple[str, ...]
-    count: int
-    points: tuple[Point, ...]
-    warm_start: bool
-    eigenvalue_speeds: int
-    units: dict[str, str]
-
-    def key(self, point: Point) -> str:
-        """What identifies the work at a point: the question, and the program that answers it."""
-        text = point.study.model_dump_json() if point.study else point.problem
-        return sha256(f"{version('damperopt')} {self.run} {self.eigenvalue_speeds} {text}".encode()).hexdigest()
 
 
 def load_sweep(path: str | Path) -> Sweep:
@@ -217,57 +158,70 @@ def sweep_of(base: Study, **settings: Any) -> Sweep:
 
 
 def _sweep(spec: SweepSpec, base: Study, where: Any) -> Sweep:
-    for key, value in spec.set.items():
-        changed, problem = _study(base, {key: value})
-        if changed is None:
-            raise ConfigError(f"{where('set', key)}: {problem}")
-        base = changed
+    sampled = spec.samples.over if spec.samples else {}
+    _disjoint(spec, sampled, where)
+    base = _changed(base, spec.set, where)
     units: dict[str, str] = {}
-    for group in (("vary", spec.vary), ("samples.over", spec.samples.over if spec.samples else {})):
+    for group in (("vary", spec.vary), ("samples.over", sampled)):
         for key in group[1]:
             units[key] = _unit(base, key, where(*group[0].split("."), key))
     raw = {key: _values(given, units[key], where("vary", key)) for key, given in spec.vary.items()}
-    axes = {key: _stored(base, key, values, where("vary", key)) for key, values in raw.items()}
+    samples = spec.samples.count if spec.samples else 1
+    total = prod(map(len, raw.values())) * samples
+    if total > MOST_POINTS:
+        raise ConfigError(f"{where('vary' if raw else 'samples')}: makes {total} points; allowed: at most {MOST_POINTS}")
+    axes = {key: _stored(base, key, raw, units[key], where("vary", key)) for key in raw}
     for key, shown in axes.items():
         if len(set(shown)) < len(shown):
             raise ConfigError(f"{where('vary', key)}: found a value twice; allowed: each once")
-    draws: list[dict[str, float]] = [{}] if spec.samples is None else _draws(spec.samples, units, where)
-    if both := set(raw) & set(draws[0]):
-        raise ConfigError(f"{where('samples', 'over', min(both))}: is varied in a grid too; allowed: one of them")
-    total = int(np.prod([len(values) for values in raw.values()])) * len(draws)
-    if total > MOST_POINTS:
-        raise ConfigError(f"{where('vary')}: makes {total} points; allowed: at most {MOST_POINTS}")
-    points: list[Point] = []
-    for chosen in product(*(zip(raw[key], axes[key], strict=True) for key in raw)):
-        for draw in draws:
-            given = {key: value for key, (value, _) in zip(raw, chosen, strict=True)} | draw
-            shown_values = {key: shown for key, (_, shown) in zip(raw, chosen, strict=True)} | draw
-            study, problem = _study(base, given)
-            points.append(Point(len(points), shown_values, study, problem))
-    if all(point.study is None for point in points):
-        raise ConfigError(
-            f"{where('vary' if spec.vary else 'samples')}: no point is a valid study; the first: {points[0].problem}"
-        )
-    sampled = tuple(spec.samples.over) if spec.samples else ()
-    return Sweep(
-        spec.name, spec.run, axes, sampled, len(draws), tuple(points), spec.warm_start, spec.eigenvalue_speeds,
-        {key: unit for key, unit in units.items() if unit},
-    )  # fmt: skip
+    points = Points(base, raw, axes, _draws(spec.samples, units, where) if spec.samples else {})
+    sweep = Sweep(
+        spec.name, spec.run, points, spec.warm_start, spec.eigenvalue_speeds, {key: unit for key, unit in units.items() if unit}
+    )
+    probes = sweep.probes()
+    if len(probes) == total and all(point.study is None for point in probes):
+        problem = probes[0].problem
+        raise ConfigError(f"{where('vary' if spec.vary else 'samples')}: no point is a valid study; the first: {problem}")
+    return sweep
 
 
-def _study(base: Study, values: Mapping[str, Any]) -> tuple[Study | None, str]:
+def _disjoint(spec: SweepSpec, sampled: Mapping[str, Any], where: Any) -> None:
+    """Refuse keys that say twice what a number is: one in two places, or a block and a key inside it."""
+    for key in sampled:
+        if key in spec.vary:
+            raise ConfigError(f"{where('samples', 'over', key)}: is varied in a grid too; allowed: one of them")
+    varied = [(("vary", key), key) for key in spec.vary] + [(("samples", "over", key), key) for key in sampled]
+    fixed = [(("set", key), key) for key in spec.set]
+    for place, key in varied + fixed:
+        if "__" in key:
+            raise ConfigError(f"{where(*place)}: is no key path; allowed: keys with dots between, as gear.caster_length")
+        for other_place, other in varied + fixed:
+            inside = key.startswith(f"{other}.") and not (place[0] != "set" and other_place[0] == "set")
+            again = key == other and place[0] == "set" and other_place[0] != "set"
+            if inside or again:
+                words = f"is inside '{other}', which is given too" if inside else "is varied too"
+                raise ConfigError(f"{where(*place)}: {words}; allowed: one of them")
+
+
+def _changed(base: Study, changes: Mapping[str, Any], where: Any) -> Study:
+    """The base with its changes, checked together: some hold only with each other."""
     try:
-        return base.replace(**{key.replace(".", "__"): value for key, value in values.items()}), ""
+        return base.replace(**{key.replace(".", "__"): value for key, value in changes.items()}) if changes else base
     except ConfigError as error:
-        return None, "; ".join(error.problems)
+        problems = []
+        for problem in error.problems:
+            path = problem.partition(":")[0]
+            own = [key for key in changes if path == key or path.startswith(f"{key}.") or key.startswith(f"{path}.")]
+            problems.append(f"{where('set', own[0]) if own else where('set')}: {problem}")
+        raise ConfigError(problems) from None
 
 
 def _unit(base: Study, key: str, where: str) -> str:
     """SI unit of a key, empty for names and blocks."""
     try:
         unit_text = unit_of(base, key)
-    except (AttributeError, KeyError):
-        _, problem = _study(base, {key: None})
+    except (AttributeError, KeyError, TypeError):
+        _, problem = study_or_problem(base, {key: None})
         raise ConfigError(
             f"{where}: unknown key ({problem or 'not in the base study'}); allowed: a key path of the base"
         ) from None
@@ -277,10 +231,15 @@ def _unit(base: Study, key: str, where: str) -> str:
     return "" if isinstance(value, str) or key == "material" else unit_text
 
 
+@cache
+def _reader(unit: str) -> TypeAdapter:
+    return TypeAdapter(Annotated[float, Quantity(unit)])
+
+
 def _number(given: Any, unit: str, where: str) -> float:
     """Number in SI; signs and ranges are checked with the study."""
     try:
-        return float(TypeAdapter(Annotated[float, Quantity(unit)]).validate_python(given))
+        return float(_reader(unit).validate_python(given))
     except ValidationError as error:
         raise ConfigError(f"{where}: {error.errors(include_url=False)[0]['msg']}") from None
 
@@ -300,13 +259,18 @@ def _values(given: Sequence[Any] | Range, unit: str, where: str) -> list[Any]:
     return [float(value) for value in space(low, high, given.points)]
 
 
-def _stored(base: Study, key: str, values: Sequence[Any], where: str) -> tuple[float | str, ...]:
+def _stored(base: Study, key: str, raw: Mapping[str, list[Any]], unit: str, where: str) -> tuple[float | str, ...]:
     """Values of an axis as the study keeps them: numbers in SI, or names. Each must be valid by itself or with others."""
     shown: list[float | str] = []
-    for given in values:
-        study, problem = _study(base, {key: given})
+    for given in raw[key]:
+        if isinstance(given, float) or (
+            isinstance(given, (int, str)) and not isinstance(given, bool) and unit not in ("", "1")
+        ):
+            shown.append(_number(given, unit or "1", where))
+            continue
+        study, problem = _study_with(base, key, given, raw)
         if study is None:
-            if isinstance(given, (int, float)):
+            if isinstance(given, int):
                 shown.append(float(given))
                 continue
             raise ConfigError(f"{where}: {problem}")
@@ -315,17 +279,27 @@ def _stored(base: Study, key: str, values: Sequence[Any], where: str) -> tuple[f
             value = getattr(value, part)
         if isinstance(value, (list, tuple)) and len(value) == 1:  # a load stands for a list of one
             (value,) = value
-        if isinstance(value, float):
-            shown.append(value)
-        else:
-            shown.append(str(getattr(value, "name", given)))
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        shown.append(float(value) if number else str(getattr(value, "name", given)))
     if len({type(value) for value in shown}) > 1:
         raise ConfigError(f"{where}: found numbers and names; allowed: one kind")
     return tuple(shown)
 
 
-def _draws(samples: Samples, units: Mapping[str, str], where: Any) -> list[dict[str, float]]:
-    """Values of each sample by key [SI]."""
+def _study_with(base: Study, key: str, given: Any, raw: Mapping[str, list[Any]]) -> tuple[Study | None, str]:
+    """The study with one value, alone or with values of the other axes: some are valid together only."""
+    study, problem = study_or_problem(base, {key: given})
+    if study is None:
+        others = {other: values for other, values in raw.items() if other != key}
+        for chosen in islice(product(*others.values()), FEW):
+            study, _ = study_or_problem(base, {key: given} | dict(zip(others, chosen, strict=True)))
+            if study is not None:
+                break
+    return study, problem
+
+
+def _draws(samples: Samples, units: Mapping[str, str], where: Any) -> dict[str, np.ndarray]:
+    """Values of all samples by key [SI]."""
     laws = {key: _law(given, units[key], where("samples", "over", key)) for key, given in samples.over.items()}
     n, d = samples.count, len(laws)
     rng = np.random.default_rng(samples.seed)
@@ -336,8 +310,7 @@ def _draws(samples: Samples, units: Mapping[str, str], where: Any) -> list[dict[
         unit_cube = stats.qmc.LatinHypercube(d, rng=rng).random(n)
     else:
         unit_cube = rng.random((n, d))
-    columns = [law.ppf(unit_cube[:, i]) for i, law in enumerate(laws.values())]
-    return [dict(zip(laws, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
+    return {key: law.ppf(unit_cube[:, i]) for i, (key, law) in enumerate(laws.items())}
 
 
 def _law(given: Distribution, unit: str, where: str) -> Any:

@@ -11,7 +11,6 @@ from typing import Annotated
 import typer
 
 from ..errors import ConfigError, OutputError
-from ..study import config
 from .shared import out
 
 __all__ = ["init", "schema", "validate"]
@@ -32,11 +31,15 @@ def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("st
 
 def schema() -> None:
     """Print the JSON Schema of a study, for editors."""
+    from ..study import config
+
     sys.stdout.write(json.dumps(config.json_schema(), indent=2) + "\n")
 
 
 def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", help="Studies to check.")]) -> None:
     """Check one study or more; exit code 2 and one message per problem if something is wrong."""
+    from ..study import config
+
     problems: list[str] = []
     for file in files:
         try:

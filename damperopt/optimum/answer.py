@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..results import UNITS, ConstraintResult, LocalOptimum, Relaxation, StartResult
+from ..study.scope import leaves_out
 from ..study.study import Study
 from .exchange import EnvelopeSolution
 from .problem import ROD, DesignProblem
@@ -119,16 +120,12 @@ def decided_by(constraints: Sequence[ConstraintResult], mass: float) -> dict[str
 
 def not_checked(study: Study) -> tuple[str, ...]:
     """What a result says nothing about."""
-    damper, notes = study.damper, []
+    notes = []
     if study.required.decay is None:
         notes.append("decay of large disturbances on the nonlinear model (requirements.decay)")
-    if damper.series_stiffness is None:
-        notes.append("damper compliance in series (damper.series_stiffness)")
-    if damper.freeplay is None and damper.end_stop is None:
-        notes.append("freeplay and end stops (damper.freeplay, damper.end_stop)")
     if study.damper.topology != "boeing" and not study.material.has_fatigue_data:
         notes.insert(0, f"fatigue of the bending arm: no Basquin data for {study.material.name}")
-    return tuple(notes)
+    return (*notes, *leaves_out(study))
 
 
 def start_result(index: int, found: EnvelopeSolution) -> StartResult:

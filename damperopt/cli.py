@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
-from importlib.metadata import version
 from typing import Annotated
 
 from . import interrupts
@@ -12,9 +12,9 @@ from . import interrupts
 with interrupts.at_once():
     import typer
 
-    from .commands import analyse, chart, init, optimise, report, schema, simulate, sweep, thesis, validate
+    from .commands import analyse, chart, components, init, optimise, report, schema, simulate, sweep, thesis, validate
     from .commands.shared import err, out
-    from .errors import DamperoptError
+    from .errors import DamperoptError, OutputError
 
 __all__ = ["app", "main"]
 
@@ -24,14 +24,18 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (optimise, report, analyse, simulate, chart, sweep, thesis, validate, init, schema):
+for command in (optimise, report, analyse, simulate, chart, sweep, thesis, components, validate, init, schema):
     app.command()(command)
 
 
 def main() -> None:
     """Entry point of the command ``damperopt``."""
     interrupts.listen()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal that lacks a character shows a sign in its place
     os.environ.setdefault("MPLBACKEND", "Agg")  # figures go to files, in worker processes too
     try:
         code = _run()
@@ -44,7 +48,10 @@ def main() -> None:
 def _run() -> int:
     """Run the command of the command line; its exit code."""
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
     except DamperoptError as error:
         if interrupts.heard():
             return _interrupted(str(error))
@@ -57,6 +64,13 @@ def _run() -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except OSError as error:
+        if error.filename is not None:  # of a file, and not of the output
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        words = f"the output cannot be written: {error.strerror}; results that were written before are kept"
+        err.print(words, markup=False, soft_wrap=True)
+        return OutputError.exit_code
     except Exception:  # a library turns an interrupt into an error of its own now and then
         if not interrupts.heard():
             raise
@@ -73,6 +87,8 @@ def _interrupted(words: str) -> int:
 
 def _show_version(wanted: bool) -> None:
     if wanted:
+        from importlib.metadata import version
+
         out.print(f"damperopt {version('damperopt')}")
         raise typer.Exit
 

@@ -319,6 +319,14 @@ class DesignResult(_Record):
         """0 solved and verified, 3 infeasible, 4 solver or verification failure."""
         return {"solved": 0, "infeasible": 3, "failed": 4}[self.status]
 
+    def __str__(self) -> str:
+        """Verdict, mass and design in one line; `to_json` has the rest."""
+        layout = f"{self.study}: {self.status}, {self.topology} ({self.geometry}), {self.material}"
+        if self.mass is None:
+            return f"{layout}: {self.message}"
+        design = ", ".join(f"{name} {value:.5g} {self.units.get(name, '')}".rstrip() for name, value in self.design.items())
+        return f"{layout}: {self.mass.total:.3f} kg; {design}"
+
     def _repr_html_(self) -> str:
         """The answer as notebooks show it."""
         mass = "" if self.mass is None else f": <b>{self.mass.total:.3f} kg</b>"

@@ -2,6 +2,7 @@
 
 from .analyse import analyse
 from .chart import chart
+from .components import components
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -9,4 +10,4 @@ from .studies import init, schema, validate
 from .sweep import sweep
 from .thesis import thesis
 
-__all__ = ["analyse", "chart", "init", "optimise", "report", "schema", "simulate", "sweep", "thesis", "validate"]
+__all__ = ["analyse", "chart", "components", "init", "optimise", "report", "schema", "simulate", "sweep", "thesis", "validate"]

@@ -7,16 +7,6 @@ from typing import Annotated
 
 import typer
 
-from ..output.folder import run_folder, write_run
-from ..output.gallery import draw_modes
-from ..output.tables import write_modes
-from ..proof.certify import certify
-from ..stability.critical import critical_speeds
-from ..stability.linear import linear_gear
-from ..stability.modes import track_modes
-from ..stability.worst import worst_points
-from . import summary
-from .arguments import speed_grid
 from .shared import ConfigArgument, DesignOption, OutputOption, out, study_and_design
 
 __all__ = ["analyse"]
@@ -26,25 +16,47 @@ def analyse(
     file: ConfigArgument,
     design: DesignOption = None,
     speeds: Annotated[str, typer.Option(metavar="MIN:MAX:STEP", help="Speeds of the table in m/s. [default: envelope]")] = "",
+    require_stable: Annotated[
+        bool, typer.Option("--require-stable", help="Exit code 3 if stability is not proved over the whole envelope.")
+    ] = False,
     output: OutputOption = None,
 ) -> None:
-    """Modes over speed, critical speeds and the exact certificate of a given design."""
+    """Modes over speed, critical speeds and the exact certificate of a given design.
+
+    Exit code 0 also where the gear is unstable: that is an answer; 2: bad input; 3: not proved stable, with --require-stable.
+    """
+    from ..output.folder import run_folder, write_run
+    from ..output.gallery import draw_modes
+    from ..output.tables import write_modes
+    from ..proof.certify import certify
+    from ..stability.critical import critical_speeds
+    from ..stability.linear import linear_gear
+    from ..stability.modes import track_modes
+    from ..stability.wavelength import shortest_wavelength
+    from ..stability.worst import worst_points
+    from . import summary
+    from .arguments import speed_grid
+
     study, values = study_and_design(file, design)
     grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
     gear = linear_gear(study, values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
     margin = study.required.stability_margin if study.requirements else 0.0
-    low, high = float(grid[0]), float(grid[-1])
+    envelope = study.envelope.speed
+    low, high = min(float(grid[0]), envelope.min), max(float(grid[-1]), envelope.max)
     if values is None:
         values = study.start
+    certificates = [certify(study, values, level) for level in dict.fromkeys((0.0, margin))]
     summary.show_analysis(
         out,
         study,
         values,
         critical=[c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)],
         worst=worst_points(gear, study.envelope)[0],
-        certificates=[certify(study, values, level) for level in dict.fromkeys((0.0, margin))],
+        certificates=certificates,
+        searched=(low, high),
+        wave=shortest_wavelength(study, tables),
     )
 
     def write(place: Path) -> None:
@@ -52,4 +64,6 @@ def analyse(
         draw_modes(place, tables, margin)
 
     write_run(folder, write)
-    out.print(f"\nResults in {folder}", soft_wrap=True)
+    out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
+    if require_stable and not certificates[0].proved:
+        raise typer.Exit(3)

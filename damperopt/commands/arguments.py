@@ -18,6 +18,12 @@ from ..study.study import Study
 
 __all__ = ["axis_range", "choices", "disturbance_of", "quantity", "speed_grid", "values_of"]
 
+FASTEST = 1e4
+"""Largest speed of a table [m/s]."""
+
+MOST_SPEEDS = 10_000
+"""Of a table: modes are followed from one to the next, a few thousand a second."""
+
 _SHORT: dict[str, dict[str, str]] = {
     "release": {"yaw": "yaw_angle", "bending": "bending_angle", "string": "string_deflection"},
     "kick": {"yaw": "yaw_rate", "bending": "bending_rate"},
@@ -109,12 +115,14 @@ def speed_grid(text: str, study: Study) -> np.ndarray:
     if not text:
         low, high = study.envelope.speed.min, study.envelope.speed.max
         return np.unique(np.linspace(low, high, 400))
-    allowed = "MIN:MAX:STEP in m/s, 0 < MIN <= MAX, STEP > 0, at most 100000 speeds, such as 5:100:1"
+    allowed = (
+        f"MIN:MAX:STEP in m/s, 0 < MIN <= MAX, STEP > 0, MAX at most {FASTEST:g}, at most {MOST_SPEEDS} speeds, such as 5:100:1"
+    )
     parts = [number(part) for part in text.split(":")]
     if len(parts) != 3 or None in parts:
         raise ConfigError(f"--speeds: found {quoted(text)}; allowed: {allowed}")
     low, high, step = (part for part in parts if part is not None)
-    if not (0 < low <= high < math.inf and 0 < step < math.inf and (high - low) / step < 1e5):
+    if not (0 < low <= high <= FASTEST and 0 < step < math.inf and (high - low) / step < MOST_SPEEDS):
         raise ConfigError(f"--speeds: found {quoted(text)}; allowed: {allowed}")
     count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
     return low + step * np.arange(count)

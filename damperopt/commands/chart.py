@@ -8,15 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..charts.chart import chart as trace_chart
-from ..charts.maps import filled_map
-from ..charts.plane import Plane
 from ..errors import ConfigError
-from ..output.folder import run_folder, write_run
-from ..output.gallery import write_chart_files
-from ..quantities.record import Force, Rate, Speed
-from . import summary
-from .arguments import axis_range, quantity, values_of
 from .shared import ConfigArgument, OutputOption, all_or_nothing, out, study_and_design
 
 __all__ = ["chart"]
@@ -39,27 +31,39 @@ def chart(
     output: OutputOption = None,
 ) -> None:
     """Stability chart of two quantities: the boundary traced to a tolerance, its type and frequency."""
+    from ..charts.chart import chart as trace_chart
+    from ..charts.maps import filled_map
+    from ..charts.plane import Plane
+    from ..output.folder import run_folder, write_run
+    from ..output.gallery import write_chart_files
+    from ..quantities.record import Force, Rate, Speed
+    from . import summary
+    from .arguments import axis_range, quantity, values_of
+
     study, values = study_and_design(file, design)
     if fill not in ("", "abscissa", "damping") or (fill and vary):
         raise ConfigError(
             f"--map: found '{fill}'{' with --vary' if vary else ''}; allowed: abscissa or damping, without --vary"
         )
-    folder = run_folder(output, f"{file.stem}-chart")
     filled = neutral = None
+    draw = partial(
+        trace_chart,
+        study,
+        axis_range(x, study, "--x"),
+        axis_range(y, study, "--y"),
+        vary=values_of(vary, study, "--vary") if vary else None,
+        design=values,
+        speed=quantity(speed, Speed, "--speed") if speed else None,
+        load=quantity(load, Force, "--load") if load else None,
+        cells=cells,
+        tolerance=tolerance,
+    )
+    at_margin = quantity(margin, Rate, "--margin")
     with all_or_nothing():
-        draw = partial(
-            trace_chart,
-            study,
-            axis_range(x, study, "--x"),
-            axis_range(y, study, "--y"),
-            vary=values_of(vary, study, "--vary") if vary else None,
-            design=values,
-            speed=quantity(speed, Speed, "--speed") if speed else None,
-            load=quantity(load, Force, "--load") if load else None,
-            cells=cells,
-            tolerance=tolerance,
-        )
-        record = draw(margin=quantity(margin, Rate, "--margin"))
+        # what is wrong with the question is found here: a wrong one leaves no folder; a folder given is looked at first
+        folder = run_folder(output, f"{file.stem}-chart") if output else None
+        record = draw(margin=at_margin)
+        folder = folder or run_folder(None, f"{file.stem}-chart")
         if record.margin > 0:
             neutral = draw(margin=0.0)
         if fill:
@@ -67,4 +71,4 @@ def chart(
             filled = filled_map(plane, fill)  # type: ignore[arg-type]  # one of the two, checked above
         write_run(folder, lambda place: write_chart_files(place, record, filled, neutral))
     summary.show_chart(out, record)
-    out.print(f"\nResults in {folder}", soft_wrap=True)
+    out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)

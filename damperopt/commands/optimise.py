@@ -8,18 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..design import combinations, optimise_each, rank
 from ..errors import Interrupted
-from ..output import write_report
-from ..output.folder import run_folder, write_run
-from ..output.gallery import write_design
-from ..output.tables import write_ranking
-from ..results import DesignResult
-from ..strength.materials import MATERIALS
-from ..study import config
-from ..study.components import optimisable
-from . import summary
-from .arguments import choices
 from .shared import ConfigArgument, OutputOption, err, out, progress, workers_for
 
 __all__ = ["optimise"]
@@ -27,7 +16,7 @@ __all__ = ["optimise"]
 
 def optimise(
     file: ConfigArgument,
-    topology: Annotated[str, typer.Option(help="A layout, a comma list of them, or all.")] = "",
+    topology: Annotated[str, typer.Option(help="A layout of 'damperopt components', a comma list, or all.")] = "",
     material: Annotated[str, typer.Option(help="A material of the library, a comma list, or all.")] = "",
     output: OutputOption = None,
     workers: Annotated[
@@ -39,6 +28,18 @@ def optimise(
 
     Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
     """
+    from ..design import combinations, optimise_each, rank
+    from ..output import write_report
+    from ..output.folder import run_folder, write_run
+    from ..output.gallery import write_design
+    from ..output.tables import write_ranking
+    from ..results import DesignResult
+    from ..strength.materials import MATERIALS
+    from ..study import config
+    from ..study.components import optimisable
+    from . import summary
+    from .arguments import choices
+
     study = config.load(file)
     topologies = choices(topology, optimisable(), "--topology")
     materials = choices(material, tuple(MATERIALS), "--material")
@@ -80,7 +81,7 @@ def optimise(
         summary.show_design(out, ordered[0])
     else:
         summary.show_ranking(out, ordered)
-    out.print(f"\nResults in {folder}", soft_wrap=True)
+    out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
     if interrupted:
         err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
         raise typer.Exit(Interrupted.exit_code)

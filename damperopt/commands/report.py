@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from ..errors import OutputError
-from ..output import write_report
 from .shared import all_or_nothing, out
 
 __all__ = ["report"]
@@ -16,6 +15,8 @@ __all__ = ["report"]
 
 def report(folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of an optimisation.")]) -> None:
     """Write report.html, one file for a design review, into the folder of an optimisation."""
+    from ..output import write_report
+
     try:
         with all_or_nothing():
             page = write_report(folder)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -27,10 +28,10 @@ from rich.text import Text
 
 from .. import interrupts
 from ..errors import ConfigError, Interrupted
-from ..results import DesignResult, load_result
-from ..study import config
-from ..study.study import Study
-from ..workers import cores
+
+if TYPE_CHECKING:  # a command imports its work when it runs: help must not wait for it
+    from ..results import DesignResult
+    from ..study.study import Study
 
 __all__ = [
     "ConfigArgument",
@@ -50,8 +51,19 @@ FEW_STARTS = 24
 SECONDS_A_LINE = 5.0
 """Between two lines of progress where there is no terminal."""
 
+
+class _Plain(Console):
+    """Console that shows control characters of names and files as a sign: what a file says must not steer the terminal."""
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Text of rich's markup, without control characters other than line feed and tabulator."""
+        return super().render_str(
+            "".join(c if c in "\n\t" or c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text), **options
+        )
+
+
 # no emoji: 5:100:1 is a range of speeds
-out, err = Console(highlight=False, emoji=False), Console(stderr=True, highlight=False, emoji=False)
+out, err = _Plain(highlight=False, emoji=False), _Plain(stderr=True, highlight=False, emoji=False)
 
 ConfigArgument = Annotated[Path, typer.Argument(metavar="CONFIG", help="Study, a YAML file.")]
 OutputOption = Annotated[
@@ -155,7 +167,8 @@ def progress() -> Iterator:
 
         def report(done: int, total: int, study: Study) -> None:
             interrupts.check()
-            shown.update(task, completed=done, total=total, description=f"{study.damper.topology}, {study.material.name}")
+            words = f"{study.damper.topology}, {study.material.name}"
+            shown.update(task, completed=done, total=total, description=escape(words))
 
         yield report
 
@@ -164,11 +177,16 @@ def workers_for(studies: Sequence[Study]) -> int:
     """One process per core, or one alone for few starts: new processes take as long to start as 20 starts to solve."""
     if sum(study.solver.starts for study in studies) <= FEW_STARTS:
         return 1
+    from ..workers import cores
+
     return cores()
 
 
 def study_and_design(file: Path, design: Path | None) -> tuple[Study, dict[str, float] | None]:
     """A study, and the design of a result with the layout that it was made for; without one, None."""
+    from ..results import load_result
+    from ..study import config
+
     study = config.load(file)
     return (study, None) if design is None else _with_design(study, load_result(design), file, design)
 
@@ -187,7 +205,7 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
     except ConfigError as error:
         raise ConfigError([f"{file}: does not go with {source}: {problem}" for problem in error.problems]) from None
     names = changed.variable_names
-    if set(result.design) != set(names) or not all(0 < value < np.inf for value in result.design.values()):
+    if set(result.design) != set(names) or not all(0 < value < math.inf for value in result.design.values()):
         raise ConfigError(
             f"{source}:1: design: found {result.design or 'none'} (status {result.status}); "
             f"allowed: a result with positive {', '.join(names) or 'design variables'}"

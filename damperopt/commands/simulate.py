@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import ConfigError
-from ..motion.exact import ExactSimulator
-from ..motion.integrators import ENGINES
-from ..motion.simulate import Simulator
-from ..motion.trajectory import motion_of
-from ..output.folder import run_folder, write_run
-from ..output.tables import write_motion, write_trajectory
-from ..quantities.record import Force, Speed, Time
-from . import summary
-from .arguments import disturbance_of, quantity
 from .shared import ConfigArgument, DesignOption, OutputOption, all_or_nothing, out, study_and_design
 
+if TYPE_CHECKING:
+    from ..stability.linear import LinearGear
+
 __all__ = ["simulate"]
+
+CYCLES = 12
+"""Of the slowest mode, that are shown unless a duration is given."""
+
+LONGEST = 3.0
+"""Longest duration that is chosen for the user [s]."""
 
 
 def simulate(
@@ -31,14 +31,27 @@ def simulate(
     kick: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw or bending rate at the start.")] = None,
     step: Annotated[list[str] | None, typer.Option(metavar="torque=VALUE", help="Yaw torque from the start.")] = None,
     unbalance: Annotated[list[str] | None, typer.Option(metavar="moment=VALUE", help="Rotating unbalance.")] = None,
-    duration: Annotated[str, typer.Option(help="Time to simulate in s.")] = "3",
-    engine: Annotated[str, typer.Option(help=f"{', '.join(ENGINES)}, exact (corners as events), or auto.")] = "auto",
+    duration: Annotated[str, typer.Option(help="Time in s. [default: 12 cycles of the slowest mode, at most 3 s]")] = "",
+    engine: Annotated[str, typer.Option(help="erk, cvodes, idas, exact (corners as events), or auto.")] = "auto",
     output: OutputOption = None,
 ) -> None:
     """Motion after a disturbance: trajectories, cycles, decay, and whether it settles, cycles or diverges.
 
     Exit code 0 also where the motion diverges: that is an answer. 2: the question is not well posed.
     """
+    from ..motion.exact import ExactSimulator
+    from ..motion.integrators import ENGINES
+    from ..motion.question import output_points, posed
+    from ..motion.simulate import Simulator
+    from ..motion.trajectory import motion_of
+    from ..output.folder import run_folder, write_run
+    from ..output.tables import write_motion, write_trajectory
+    from ..quantities.record import Force, Speed, Time
+    from ..results import load_result
+    from ..stability.linear import linear_gear
+    from . import summary
+    from .arguments import disturbance_of, quantity
+
     study, values = study_and_design(file, design)
     given = {"release": release or [], "kick": kick or [], "step": step or [], "unbalance": unbalance or []}
     required = study.requirements.decay if study.requirements else None
@@ -48,11 +61,18 @@ def simulate(
         disturbance = required.disturbance
     else:
         disturbance = disturbance_of({"release": ["yaw=1deg"]})
+    chosen = "" if any(given.values()) else "of requirements.decay" if required is not None else "as none was given"
     at_speed, at_load = quantity(speed, Speed, "--speed"), quantity(load, Force, "--load") if load else None
-    seconds = quantity(duration, Time, "--duration")
-    folder = run_folder(output, f"{file.stem}-simulation")
+    seconds = quantity(duration, Time, "--duration") if duration else None
     if engine not in ("auto", "exact", *ENGINES):
         raise ConfigError(f"--engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
+    gear = linear_gear(study, values)
+    if seconds is None:
+        seconds = _enough(gear, at_speed, at_load or max(study.envelope.loads))
+    # a question that is not well posed leaves no folder behind
+    posed(study, gear.state_names, at_speed, at_load or max(study.envelope.loads), disturbance, seconds)
+    output_points(gear, at_speed, at_load or max(study.envelope.loads), seconds)
+    folder = run_folder(output, f"{file.stem}-simulation")
     run = ExactSimulator(study, values) if engine == "exact" else Simulator(study, values, engine)
     with all_or_nothing():
         motion = run(at_speed, at_load, disturbance, seconds)
@@ -63,8 +83,20 @@ def simulate(
 
         write_trajectory(place / "trajectory.csv", motion)
         write_motion(place / "motion.json", motion, found, disturbance, values or study.start)
-        figures.save_each({"trajectory": lambda: figures.trajectory(motion, found)}, place)
+        after = f"after {summary.disturbance_words(disturbance)}"
+        figures.save_each({"trajectory": lambda: figures.trajectory(motion, found, after)}, place)
 
     write_run(folder, write)
-    summary.show_motion(out, motion, found, required.cycles if required else 3)
-    out.print(f"\nResults in {folder}", soft_wrap=True)
+    words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
+    sized = load_result(design).limit_event if design is not None else {}
+    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
+
+
+def _enough(gear: LinearGear, speed: float, load: float) -> float:
+    """Seconds that show what a motion does: `CYCLES` of the slowest mode that oscillates, at most `LONGEST`."""
+    import numpy as np
+
+    rates = np.abs(np.linalg.eigvals(gear.matrices(speed, load)[0]).imag)
+    slowest = rates[rates > 1e-6 * max(float(rates.max()), 1.0)].min(initial=np.inf)
+    return float(min(2 * np.pi * CYCLES / slowest, LONGEST)) if np.isfinite(slowest) else LONGEST

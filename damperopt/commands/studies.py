@@ -12,9 +12,6 @@ import typer
 
 from ..errors import ConfigError, OutputError
 from ..reading import printable
-from ..study import config
-from ..study.plausibility import implausible
-from ..study.schema import json_schema
 from .shared import err, out
 
 __all__ = ["init", "schema", "validate"]
@@ -35,8 +32,11 @@ def init(path: Annotated[Path, typer.Argument(help="File to write.")] = Path("st
 
 def schema(sweep: Annotated[bool, typer.Option("--sweep", help="Of a sweep instead of a study.")] = False) -> None:
     """Print the JSON Schema of a study or a sweep, for editors."""
+    from ..study import config
+    from ..study.schema import json_schema
+
     if sweep:
-        from ..sweep.spec import SweepSpec  # SciPy's distributions with it: not for every command
+        from ..sweep.spec import SweepSpec
 
     found = json_schema(SweepSpec) if sweep else config.json_schema()
     sys.stdout.write(json.dumps(found, indent=2) + "\n")
@@ -47,6 +47,8 @@ def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", he
 
     Numbers that are possible but not usual come back as warnings, with the usual range.
     """
+    from ..study import config
+
     problems: list[str] = []
     for file in files:
         try:
@@ -64,7 +66,10 @@ def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", he
 
 def _of_study(text: str, file: Path) -> tuple[str, list[str]]:
     """A study in words, and what is not usual about it."""
-    study = config.loads(text, str(file))
+    from ..study.config import loads
+    from ..study.plausibility import implausible
+
+    study = loads(text, str(file))
     return f"{study.name}, {study.damper.topology}, {study.gear.kind}", [str(number) for number in implausible(study)]
 
 

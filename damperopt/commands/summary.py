@@ -12,13 +12,18 @@ from rich.table import Table
 
 from ..charts.chart import StabilityChart
 from ..literature.arreaza2015 import Row
-from ..motion.trajectory import Motion, Trajectory
+from ..motion.measure import PEAKS
+from ..motion.trajectory import ROUNDING, Motion, Trajectory
+from ..quantities.record import quantity_of
 from ..results import Certificate, DesignResult, OperatingPoint
 from ..stability.critical import CriticalSpeed
+from ..stability.wavelength import ENOUGH, Wavelength
 from ..study.components import unit_of_name
+from ..study.disturbances import Disturbance
+from ..study.scope import covers, leaves_out
 from ..study.study import Study
 
-__all__ = ["show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
+__all__ = ["disturbance_words", "show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
 
 SHOWN_PEAKS = (
     "yaw_angle",
@@ -84,7 +89,7 @@ def show_design(console: Console, result: DesignResult) -> None:
         console.print(f"Other local optima (starts): {', '.join(others)}", soft_wrap=True)
     top = [s for s in result.sensitivities if s.value != 0][:5]
     console.print("Mass per +1 % of: " + ", ".join(f"{s.input} {s.elasticity:+.2f} %" for s in top), soft_wrap=True)
-    console.print("Not checked: " + "; ".join(result.not_checked), soft_wrap=True, style="dim")
+    console.print("Not checked: " + escape("; ".join(result.not_checked)), soft_wrap=True, style="dim")
     if result.status == "failed":
         console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
 
@@ -95,34 +100,61 @@ def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
     for position, result in enumerate(results, 1):
         mass = f"{result.mass.total:.3f}" if result.mass else ""
         active = ", ".join(c.name for c in result.constraints if c.active)
-        table.add_row(str(position), result.topology, result.material, mass, WORDS[result.status], active)
+        table.add_row(str(position), result.topology, escape(result.material), mass, WORDS[result.status], active)
     console.print(table)
     for result in results:
         if result.status != "solved":
             console.print(f"{result.topology}, {escape(result.material)}: {escape(result.message)}", soft_wrap=True)
 
 
-def show_motion(console: Console, trajectory: Trajectory, motion: Motion, cycles: int) -> None:
-    """What a trajectory shows."""
+def disturbance_words(disturbance: Disturbance) -> str:
+    """A disturbance in words, such as ``release of yaw angle 1 deg``."""
+    parts = []
+    for kind in type(disturbance).model_fields:
+        block = getattr(disturbance, kind)
+        for name, field in type(block).model_fields.items() if block is not None else ():
+            quantity, value = quantity_of(field.annotation, field.metadata), getattr(block, name)
+            if value:
+                parts.append(" ".join((kind, "of", name.replace("_", " "), *_number(value, quantity.unit if quantity else ""))))
+    return ", ".join(parts)
+
+
+def show_motion(
+    console: Console,
+    trajectory: Trajectory,
+    motion: Motion,
+    cycles: int,
+    disturbance: str = "",
+    sized: Mapping[str, float] = {},
+) -> None:
+    """What a trajectory shows, after what, and beside the loads that the parts were sized for."""
     console.print(
         f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
     )
     if trajectory.message:
         console.print(f"[bold red]stopped[/]: {escape(trajectory.message)}", soft_wrap=True)
-    ratio = "not completed" if motion.decay_ratio is None else f"{motion.decay_ratio:.4g} of the first amplitude"
-    console.print(f"{motion.cycles:g} cycles; after {cycles}: {ratio}")
-    if motion.frequency:
+    if disturbance:
+        console.print(f"After {escape(disturbance)}", soft_wrap=True)
+    ratio = "" if motion.decay_ratio is None else f"{motion.decay_ratio:.4g} of the first amplitude"
+    counted = f"{motion.cycles:g} cycles" if motion.cycles else "No whole cycle"
+    console.print(f"{counted}; after {cycles}: {ratio}" if ratio else f"{counted}, fewer than the {cycles} of the decay")
+    if motion.frequency and motion.amplitude < ROUNDING:
+        console.print("At the end: at rest, to rounding")
+    elif motion.frequency:
         degrees = math.degrees(motion.amplitude)
         console.print(
             f"At the end: yaw +-{motion.amplitude:.4g} rad ({degrees:.3g} deg) about {motion.mean:.2g} rad, "
             f"{motion.frequency:.4g} Hz",
             soft_wrap=True,
         )
-    table = _table("peak", "value", "unit")
+    table = _table("peak", "value", "unit", *(("sized for",) if sized else ()))
     for name in SHOWN_PEAKS:
         if name in motion.peaks:
             value, unit = motion.peaks[name], trajectory.units[name]
-            table.add_row(name.replace("_", " "), *(_number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)))
+            limit = sized.get(name) if name in PEAKS else None
+            beside = "" if limit is None else f"{limit:.4g} {unit}" + (" [red]exceeded[/]" if value > limit else "")
+            shown = _number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
+            table.add_row(name.replace("_", " "), *shown, *((beside,) if sized else ()))
     console.print(table)
 
 
@@ -133,6 +165,8 @@ def show_analysis(
     critical: Sequence[CriticalSpeed],
     worst: OperatingPoint,
     certificates: Sequence[Certificate],
+    searched: tuple[float, float],
+    wave: Wavelength | None,
 ) -> None:
     """Critical speeds, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
@@ -145,16 +179,37 @@ def show_analysis(
             after = "unstable" if c.destabilising else "stable"
             change = f"{after} above" if c.boundary else "unstable on both sides"
             direction = "destabilised" if c.destabilising else "stabilised"
-            table.add_row(f"{c.speed:.4f} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
+            table.add_row(f"{_fixed(c.speed)} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
     else:
-        low, high = study.envelope.speed.min, study.envelope.speed.max
+        low, high = searched
         console.print(f"No critical speed between {low:g} and {high:g} m/s.")
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
-        verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]not met[/]: {certificate.reason}"
+        verdict = (
+            "[green]proved[/] over the whole envelope"
+            if certificate.proved
+            else f"[red]not met[/]: {escape(certificate.reason)}"
+        )
         console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
+    console.print("It speaks of: " + escape(", ".join(covers(study))), soft_wrap=True, style="dim")
+    console.print("Not checked: " + escape("; ".join(leaves_out(study))), soft_wrap=True, style="dim")
+    if wave is not None:
+        _show_wavelength(console, wave)
+
+
+def _show_wavelength(console: Console, wave: Wavelength) -> None:
+    console.print(
+        f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.2g} contact lengths, at {wave.speed:g} m/s",
+        soft_wrap=True,
+    )
+    if wave.contact_lengths < ENOUGH:
+        console.print(
+            f"[yellow]Below {ENOUGH:g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
+            "the verdict holds for this tyre law, and may not for the tyre.",
+            soft_wrap=True,
+        )
 
 
 def _table(*columns: str) -> Table:
@@ -162,6 +217,11 @@ def _table(*columns: str) -> Table:
     for column in columns:
         table.add_column(column, justify="right" if column in ("value", "mass, kg") else "left")
     return table
+
+
+def _fixed(speed: float) -> str:
+    """A speed with four decimals; one that these would show as 0 with four digits."""
+    return f"{speed:.4f}" if speed >= 1e-3 else f"{speed:.4g}"
 
 
 def _number(value: float, unit: str) -> tuple[str, str]:
@@ -215,7 +275,7 @@ def show_claims(console: Console, rows: Sequence[Row]) -> None:
     for row in rows:
         found.setdefault((row.figure, row.claim), {})[row.form] = "agrees" if row.verdict.agrees else "differs"
     for (number, claim), verdicts in found.items():
-        table.add_row(number, claim, *(verdicts.get(form, "") for form in forms))
+        table.add_row(number, escape(claim), *(verdicts.get(form, "") for form in forms))
     console.print(table)
     for form in forms:
         agreed = [row.verdict.agrees for row in rows if row.form == form]

@@ -6,19 +6,18 @@ import time
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
 
 from .. import interrupts
 from ..errors import Interrupted
-from ..output.sweeps import claimed, write_results
-from ..provenance import program, program_parts, provenance_of
-from ..sweep import PointRecord, Sweep, load_sweep, run_sweep, stored_records
-from ..sweep.run import Pool, counts
-from ..workers import check_cluster, cluster, cluster_size, cores, process_pool
 from .shared import bar, err, out
+
+if TYPE_CHECKING:
+    from ..sweep import PointRecord, Sweep
+    from ..sweep.run import Pool
 
 __all__ = ["sweep"]
 
@@ -30,7 +29,7 @@ def sweep(
     ] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes, or points in flight. [default: one per core]")] = None,
     scheduler: Annotated[
-        str, typer.Option(metavar="tcp://HOST:PORT", help=r"A running Dask cluster; needs damperopt\[cluster].")
+        str, typer.Option(metavar="tcp://HOST:PORT", help="A running Dask cluster; needs damperopt[cluster].")
     ] = "",
 ) -> None:
     """Optimise or analyse a study over grids, lists or samples of its keys; the same command goes on after an interrupt.
@@ -38,6 +37,12 @@ def sweep(
     Exit code 0: every point has an answer; 2: bad input; 4: a point failed, or the scheduler is lost; 130 or 143: interrupted,
     finished points are kept.
     """
+    from ..output.sweeps import claimed, write_results
+    from ..provenance import program_parts
+    from ..sweep import load_sweep
+    from ..sweep.run import counts
+    from ..workers import check_cluster, cluster, cluster_size, cores, process_pool
+
     todo = load_sweep(file)
     folder = output or Path("runs") / file.stem
     if scheduler:
@@ -71,6 +76,9 @@ def _say_what_makes_no_study(todo: Sweep) -> None:
 
 def _run(todo: Sweep, file: Path, folder: Path, pool: Pool, in_flight: int) -> tuple[dict[int, PointRecord], dict[str, str]]:
     """Records of all points, and where they come from."""
+    from ..provenance import program, provenance_of
+    from ..sweep import run_sweep, stored_records
+
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
     known, total = len(stored_records(todo, folder)), len(todo.points)
     if known:

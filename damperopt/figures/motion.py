@@ -29,7 +29,7 @@ ELSEWHERE = {"yaw_rate", "bending_angle", "bending_rate", "dashpot_stroke", "lin
 """States that another curve shows."""
 
 
-def trajectory(record: Trajectory, motion: Motion) -> Any:
+def trajectory(record: Trajectory, motion: Motion, after: str = "") -> Any:
     """Yaw, lateral motion, damper force and stroke, and arm stress over time.
 
     Parameters
@@ -37,6 +37,8 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
     record : Trajectory
     motion : Motion
         What it shows, for the title.
+    after : str
+        What set it off, for the title.
 
     Returns
     -------
@@ -60,7 +62,7 @@ def trajectory(record: Trajectory, motion: Motion) -> Any:
         rows[-1, 0].set_xlabel("Time [s]")
         figure.align_ylabels(rows[:, 0])
         words = motion.kind if not record.message else f"{motion.kind}: {plain(record.message)}"
-        figure.suptitle(f"{written(record.speed, record.load)}: {words}", fontsize=10)
+        figure.suptitle(f"{written(record.speed, record.load)}: {words}" + (f"\n{plain(after)}" if after else ""), fontsize=10)
         return figure
 
 

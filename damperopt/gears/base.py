@@ -97,5 +97,8 @@ class Gear(Record):
         return {"damper": Attachment(x["yaw_angle"], x["yaw_rate"])}
 
     def leaves_out(self) -> tuple[str, ...]:
-        """What this model of a gear does not hold, in words."""
-        return ()
+        """What a proof of this gear does not speak of, in words."""
+        friction = "dry friction of the strut (gear.friction)"
+        if self.friction is not None:
+            friction = "the dry friction of the strut: simulate has it"
+        return (friction, "motion of the shock strut: its stroke is frozen")

@@ -10,7 +10,7 @@ from ..expressions.corners import Corners
 from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact
 from ..quantities.record import Inertia
-from .base import Names
+from .base import Gear, Names
 from .yaw_bending import YawBending
 
 __all__ = ["SpinningWheel"]
@@ -41,5 +41,5 @@ class SpinningWheel(YawBending):
         return Motion({**motion.rates, **rates}, {**motion.outputs, "torque_without_friction": drive})
 
     def leaves_out(self) -> tuple[str, ...]:
-        """Nothing that another kind of this room holds."""
-        return ()
+        """What every gear leaves out."""
+        return Gear.leaves_out(self)

@@ -70,4 +70,5 @@ class Yaw(Gear):
 
     def leaves_out(self) -> tuple[str, ...]:
         """Words for what only a gear that bends can show."""
-        return ("lateral bending of the strut, and with it gyroscopic moments of the wheel (gear.kind yaw)",)
+        words = "lateral bending of the strut, and with it gyroscopic moments of the wheel (gear.kind yaw)"
+        return (words, *Gear.leaves_out(self))

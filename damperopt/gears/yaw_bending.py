@@ -11,7 +11,7 @@ from ..expressions.corners import Corners
 from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from .base import Names
+from .base import Gear, Names
 from .yaw import LateralMode, Yaw
 
 __all__ = ["YawBending"]
@@ -57,4 +57,4 @@ class YawBending(Yaw):
 
     def leaves_out(self) -> tuple[str, ...]:
         """The wheel of this kind does not spin."""
-        return ("gyroscopic moments of the spinning wheel (gear.wheel_polar_inertia)",)
+        return ("gyroscopic moments of the spinning wheel (gear.wheel_polar_inertia)", *Gear.leaves_out(self))

@@ -49,8 +49,14 @@ class Joints(Record):
         words = []
         if self.link_stiffness is None:
             words.append("flexibility of the torque links (damper.link_stiffness)")
-        if self.freeplay is None and self.end_stop is None:
-            words.append("freeplay and end stops (damper.freeplay, damper.end_stop)")
+        if self.freeplay is None:
+            words.append("freeplay (damper.freeplay)")
+        else:
+            words.append(f"the freeplay of {1e3 * self.freeplay.gap:g} mm, taken as closed: simulate shows its limit cycle")
+        if self.end_stop is None:
+            words.append("end stops (damper.end_stop)")
+        else:
+            words.append(f"the end stop at {1e3 * self.end_stop.stroke:g} mm, which small motions do not meet")
         return tuple(words)
 
 

@@ -25,6 +25,9 @@ MAX_POINTS = 2_000_000
 YAW_RANGE = 1.0
 """Yaw angle [rad] up to which linkage and tyre laws are trusted."""
 
+MOST_ACCELERATION = 1e6
+"""Yaw acceleration [rad/s^2] by a torque above which nothing is simulated: within 1.5 ms it turns the gear out of its range."""
+
 UNCLOSED = 1e-9
 """Residual of the closed linkage [m^2, m] above which it counts as not closed."""
 
@@ -129,6 +132,13 @@ def posed(
     except ValidationError as error:
         problems = [f"disturbance.{'.'.join(map(str, p['loc']))}: {p['msg']}" for p in error.errors(include_url=False)]
         raise ConfigError(problems) from None
+    rate, inertia = speed / study.gear.wheel_radius, study.gear.yaw_inertia
+    torques = {"step.yaw_torque": (disturbance.yaw_torque, 1.0, "N m")}
+    torques["unbalance.moment"] = disturbance.unbalance_moment, rate**2, "kg m^2"
+    for key, (value, lever, unit) in torques.items():
+        if not abs(value) * lever <= MOST_ACCELERATION * inertia:
+            largest = MOST_ACCELERATION * inertia / lever
+            raise ConfigError(f"disturbance.{key}: found {value:g} {unit}; allowed: at most {largest:.3g} {unit} for this gear")
     given = disturbance.initial_values
     lacking = [name for name, value in given.items() if value and name not in state_names]
     if lacking:

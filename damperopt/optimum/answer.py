@@ -8,6 +8,7 @@ import numpy as np
 
 from ..results import ConstraintResult, LocalOptimum, Relaxation, StartResult
 from ..study.components import unit_of_name
+from ..study.scope import leaves_out
 from ..study.study import Study
 from .exchange import EnvelopeSolution
 from .problem import DesignProblem
@@ -124,12 +125,17 @@ def decided_by(constraints: Sequence[ConstraintResult], mass: float) -> dict[str
 
 def not_checked(study: Study) -> tuple[str, ...]:
     """What a result says nothing about."""
-    notes = [*study.gear.leaves_out(), *study.tyre.contact.leaves_out(), *study.damper.leaves_out()]
+    notes = []
     if study.required.decay is None:
         notes.append("decay of large disturbances on the nonlinear model (requirements.decay)")
+    if study.required.limit_event == "simulated":
+        notes.append(
+            "ground handling: with limit_event 'simulated' the motions after the required disturbance are the only load; no "
+            "towing, turning, braking or landing case sizes the parts"
+        )
     if "I_arm" in study.variable_names and not study.material.has_fatigue_data:
         notes.insert(0, f"fatigue of the bending arm: no Basquin data for {study.material.name}")
-    return tuple(notes)
+    return (*notes, *leaves_out(study))
 
 
 def start_result(index: int, found: EnvelopeSolution) -> StartResult:

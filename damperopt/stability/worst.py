@@ -7,7 +7,7 @@ from scipy.ndimage import maximum_filter
 from scipy.optimize import minimize, minimize_scalar
 
 from ..results import OperatingPoint
-from ..study.study import Envelope
+from ..study.study import Envelope, Study
 from .critical import along_loads, along_speeds
 from .linear import LinearGear
 
@@ -20,13 +20,16 @@ LINES = 7
 """Lines of constant speed along which a load range is searched exactly."""
 
 
-def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, samples: int = 40) -> list[OperatingPoint]:
+def worst_points(
+    gear: LinearGear, envelope: Envelope | Study, enough: float = np.inf, samples: int = 40
+) -> list[OperatingPoint]:
     """Local maxima of the spectral abscissa over the envelope, the global one first.
 
     Parameters
     ----------
     gear : LinearGear
-    envelope : Envelope
+    envelope : Envelope or Study
+        A study stands for its envelope.
     enough : float
         Over a load range: if its ends show an abscissa above this, their maxima are returned without looking between.
     samples : int
@@ -44,6 +47,8 @@ def worst_points(gear: LinearGear, envelope: Envelope, enough: float = np.inf, s
     method, as for the H-infinity norm). Over a load range that holds at both ends; between them the peaks of a grid are
     refined, which is no proof: `certify` is.
     """
+    if isinstance(envelope, Study):
+        envelope = envelope.envelope
     points = [point for load in envelope.loads for point in _worst_at_load(gear, envelope, load, samples)]
     if envelope.load_is_range and max(p.abscissa for p in points) <= enough:
         points += _worst_between_loads(gear, envelope, samples)

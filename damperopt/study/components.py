@@ -25,6 +25,7 @@ __all__ = [
     "gears",
     "optimisable",
     "rooms",
+    "tag_names",
     "unit_of_name",
 ]
 
@@ -72,6 +73,11 @@ def rooms() -> dict[str, dict[str, type[Any]]]:
         "linkages": dict(layouts()),
         "dampers": dict(dampers()),
     }
+
+
+def tag_names() -> tuple[str, ...]:
+    """Keys that choose a kind."""
+    return ("kind", "law", "contact", "topology")
 
 
 def optimisable() -> tuple[str, ...]:

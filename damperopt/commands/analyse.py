@@ -29,7 +29,7 @@ def analyse(
     from ..output.gallery import draw_modes
     from ..output.tables import write_modes
     from ..proof.certify import certify
-    from ..stability.critical import critical_speeds
+    from ..stability.critical import critical_speeds, marginal_throughout
     from ..stability.linear import linear_gear
     from ..stability.modes import track_modes
     from ..stability.wavelength import shortest_wavelength
@@ -57,6 +57,7 @@ def analyse(
         certificates=certificates,
         searched=(low, high),
         wave=shortest_wavelength(study, tables),
+        marginal=any(marginal_throughout(gear, load, low, high) for load in study.envelope.loads),
     )
 
     def write(place: Path) -> None:

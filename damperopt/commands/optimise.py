@@ -78,7 +78,7 @@ def optimise(
 
     write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:
-        summary.show_design(out, ordered[0])
+        summary.show_design(out, ordered[0], studies[0])
     else:
         summary.show_ranking(out, ordered)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)

@@ -38,8 +38,8 @@ SHOWN_PEAKS = (
 WORDS = {"solved": "[bold green]solved[/]", "infeasible": "[bold red]infeasible[/]", "failed": "[bold red]failed[/]"}
 
 
-def show_design(console: Console, result: DesignResult) -> None:
-    """One result: mass, design, constraints, proof."""
+def show_design(console: Console, result: DesignResult, study: Study) -> None:
+    """One result: mass, design, constraints, proof and what it covers."""
     console.print(
         f"\n{WORDS[result.status]}: {escape(result.study)}, {result.topology} ({result.geometry}), {escape(result.material)}"
     )
@@ -67,6 +67,7 @@ def show_design(console: Console, result: DesignResult) -> None:
         f"{certificate.speed[1]:g} m/s, {loads} kN",
         soft_wrap=True,
     )
+    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     console.print(
         f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "
         f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
@@ -167,6 +168,7 @@ def show_analysis(
     certificates: Sequence[Certificate],
     searched: tuple[float, float],
     wave: Wavelength | None,
+    marginal: bool = False,
 ) -> None:
     """Critical speeds, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
@@ -177,13 +179,18 @@ def show_analysis(
         table = _table("critical speed", "load", "kind", "frequency", "root", "gear")
         for c in critical:
             after = "unstable" if c.destabilising else "stable"
-            change = f"{after} above" if c.boundary else "unstable on both sides"
+            sides = "touches the line, nothing changes" if c.touching else "unstable on both sides"
+            change = f"{after} above" if c.boundary else sides
             direction = "destabilised" if c.destabilising else "stabilised"
             table.add_row(f"{_fixed(c.speed)} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
     else:
         low, high = searched
-        console.print(f"No critical speed between {low:g} and {high:g} m/s.")
+        console.print(
+            "[yellow]Marginal at every speed[/]: a root lies on the line all over."
+            if marginal
+            else f"No critical speed between {low:g} and {high:g} m/s."
+        )
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
@@ -193,7 +200,7 @@ def show_analysis(
             else f"[red]not met[/]: {escape(certificate.reason)}"
         )
         console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
-    console.print("It speaks of: " + escape(", ".join(covers(study))), soft_wrap=True, style="dim")
+    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     console.print("Not checked: " + escape("; ".join(leaves_out(study))), soft_wrap=True, style="dim")
     if wave is not None:
         _show_wavelength(console, wave)

@@ -13,6 +13,7 @@ import yaml
 from ..errors import ConfigError
 from ..results import DesignResult, load_result
 from ..stability.modes import ModeTable, track_modes
+from ..study.scope import covers
 from ..study.study import Study
 from . import facts, words
 from .gallery import Answer, DesignFigure, figures_of
@@ -58,7 +59,7 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         results=results,
         words=words,
         asked=words.asked(study),
-        covers=words.covers(study),
+        covers=covers(study),
         design=words.design_rows(study, best),
         constraints=words.constraint_rows(best),
         loads=words.load_rows(study, best),

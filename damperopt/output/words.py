@@ -22,7 +22,6 @@ __all__ = [
     "beyond",
     "certificate",
     "constraint_rows",
-    "covers",
     "damping_rows",
     "decided_by",
     "design_rows",
@@ -201,28 +200,6 @@ def beyond(study: Study, found: CriticalSpeed | None) -> str:
         f"The first critical speed beyond the envelope: {place(found.speed, found.load)} ({kind}), "
         f"{100 * (found.speed / high - 1):.3g} % above it."
     )
-
-
-def covers(study: Study) -> list[str]:
-    """What a certificate is a proof of, and what of the study it leaves out, a sentence each."""
-    damper, start = study.damper, study.start
-    links = "rigid torque links" if damper.links(start) is None else "torque links as stiff as the study says"
-    series = "a damper without compliance" if damper.series(start) is None else "the damper's compliance in series"
-    found = [
-        f"The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
-        f"stop reached), no friction, {links}, {series}."
-    ]
-    left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
-    if names := [name for name, value in left if value is not None]:
-        found.append(
-            f"The study has {' and '.join(names)}, which the certificate does not cover: a limit cycle can remain; "
-            "damperopt simulate shows it."
-        )
-    if study.required.limit_event == "simulated":
-        found.append(
-            "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
-        )
-    return found
 
 
 def certificate(result: DesignResult) -> str:

@@ -87,15 +87,15 @@ def test_says_first_what_the_proof_covers_and_what_not(solved, page):
 
 def test_says_what_of_the_study_the_proof_leaves_out(solved):
     study, _ = solved
-    assert len(words.covers(study)) == 1
+    assert len(covers(study)) == 1
     loose = study.replace(
         damper__freeplay={"gap": 1e-3}, gear__friction={"torque": 50.0}, requirements__limit_event="simulated"
     )
-    _, left_out, event = words.covers(loose)
+    _, left_out, event = covers(loose)
     assert "freeplay and friction, which the certificate does not cover: a limit cycle can remain" in left_out
     assert "no load of ground handling remains" in event
     soft = study.replace(damper__link_stiffness=1e7, damper__series_stiffness=1e8)
-    assert "torque links as stiff as the study says, the damper's compliance in series" in words.covers(soft)[0]
+    assert "torque links as stiff as the study says, the damper's compliance in series" in covers(soft)[0]
 
 
 def test_says_loads_sizes_damping_and_the_next_critical_speed(solved, page):

@@ -17,6 +17,7 @@ from matplotlib.image import imread
 import damperopt
 from damperopt.output import report_of, words, write_report
 from damperopt.output.gallery import write_design
+from damperopt.study.scope import covers
 
 COMMAND = [sys.executable, "-c", "from damperopt.cli import main; main()", "report"]
 

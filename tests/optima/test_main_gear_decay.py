@@ -175,3 +175,11 @@ def test_infeasible_decay_is_named_with_speed_and_shortfall(main_gear_with_decay
     assert enough.name == "decay_ratio"
     relaxed = optimise(study.replace(requirements__decay__ratio=1.001 * enough.needed))
     assert relaxed.status == "solved"
+
+
+@pytest.mark.parametrize(("stiffness", "abscissa", "speed"), [(8e6, "4.0", "19"), (1e8, "0.16", "5")])
+def test_the_optimum_is_unstable_with_elastic_links_as_the_readme_says(main_gear_with_decay, stiffness, abscissa, speed):
+    design = FROZEN_WITH_DECAY["arreaza"][1]
+    study = main_gear_with_decay.replace(damper__link_stiffness=stiffness)
+    worst = damperopt.worst_points(damperopt.linear_gear(study, design), study.envelope)[0]
+    assert (f"{worst.abscissa:.{len(abscissa) - 2}f}", f"{worst.speed:.0f}") == (abscissa, speed)

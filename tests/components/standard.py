@@ -265,7 +265,7 @@ def _unknowns(dae: DAE, study: Study, x: np.ndarray) -> Any:
 
 
 def declared_powers_are_kept_exactly(study: Study) -> None:
-    """The state matrix is a combination of the declared powers of V and F_z: exact numbers, at points that made none of them."""
+    """The state matrix is a combination of the declared powers of V and F_z: exactly, at points that made none of them."""
     Q, model = flint.fmpq, LinearModel(study)
     design = [Q(*value.as_integer_ratio()) for value in study.start.values()]
     data = [Q(*value.as_integer_ratio()) for value in data_values(study)]
@@ -350,8 +350,7 @@ def every_quantity_is_shown(study: Study, motion: Any, file: Any) -> None:
 
 
 def _registry() -> Any:
-    registry = pint.UnitRegistry()
-    return registry
+    return pint.UnitRegistry()
 
 
 def peaks_bound(law: Any, load: float) -> None:

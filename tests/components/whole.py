@@ -34,14 +34,10 @@ def goes_through_the_commands(study: Study, folder: Path) -> None:
     certificate = damperopt.certify(study, study.start, margin=0.0)
     assert certificate.reason
     assert certificate.proved == (worst.abscissa < 0), certificate.reason
-    x = (
-        (study.variable_names[0], 0.1 * list(study.start.values())[0], 10 * list(study.start.values())[0])
-        if study.variables
-        else None
-    )
-    record = damperopt.chart(
-        study, x or ("speed", low, high), ("vertical_load", load / 2, load), **({} if not x else {"speed": high})
-    )
+    first = next(iter(study.start.items()), None)
+    x = None if first is None else (first[0], 0.1 * first[1], 10 * first[1])
+    fixed = {} if x is None else {"speed": high}
+    record = damperopt.chart(study, x or ("speed", low, high), ("vertical_load", load / 2, load), **fixed)
     assert record.families
     write_chart(folder / "chart.csv", record)
     question = {"speed": high / 2, "disturbance": {"release": {"yaw_angle": 1e-3}}, "duration": 0.03}

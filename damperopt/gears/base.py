@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from ..expressions.calculus import Expr, cos, sin, tan
 from ..expressions.corners import Corners
 from ..ports.motion import Attachment, Motion, Torque
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Angle, Coordinate, Inertia, Length, Record
+from ..quantities.record import Angle, Coordinate, Inertia, Record
+from ..quantities.units import Quantity
 from .friction import Friction
 
 __all__ = ["Gear", "Names"]
@@ -47,7 +48,7 @@ class Gear(Record):
     """e, offset of the axle from the strut axis, + behind it [m]; the mechanical trail with rake is `lever`."""
     rake_angle: Angle = 0.0
     """phi, between the strut axis and the vertical, + with the foot of the strut forward [rad]."""
-    wheel_radius: Length
+    wheel_radius: Annotated[float, Quantity("m", above=0, example="0.36 m")]
     """R_w, loaded [m]."""
     friction: Friction | None = None
     """Dry friction of the strut in yaw."""

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
-from ..quantities.record import Record, Torque
+from ..quantities.record import Record
 from ..quantities.units import Quantity
 
 __all__ = ["Friction", "friction_torque"]
@@ -15,7 +15,7 @@ __all__ = ["Friction", "friction_torque"]
 class Friction(Record):
     """Dry (Coulomb) friction of the strut in yaw."""
 
-    torque: Torque
+    torque: Annotated[float, Quantity("N m", above=0, example="50 N m")]
     """Largest, sliding or sticking [N m]."""
     smoothing: Annotated[float, Quantity("rad/s", above=0, example="0.001 rad/s")] = 1e-3
     """Yaw rate over which the smooth version turns around [rad/s]."""

@@ -9,8 +9,8 @@ from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact
-from ..quantities.record import Inertia
 from .base import Gear, Names
+from .yaw import PolarInertia
 from .yaw_bending import YawBending
 
 __all__ = ["SpinningWheel"]
@@ -23,7 +23,7 @@ class SpinningWheel(YawBending):
     EXTENDS: ClassVar = ("yaw_bending", "wheel_polar_inertia")
 
     kind: Literal["spinning_wheel"]  # type: ignore[assignment]  # each kind has a literal of its own
-    wheel_polar_inertia: Inertia
+    wheel_polar_inertia: PolarInertia
     """I_p of wheel, tyre and rotating brake about the axle [kg m^2]."""
 
     def rates(self, x: Names, contacts: Sequence[Contact], damper: Torque, yaw_torque: Expr, corners: Corners) -> Motion:

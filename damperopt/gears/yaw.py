@@ -3,30 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from ..expressions.calculus import Expr, cos, sin
 from ..expressions.corners import Corners
 from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Inertia, Length, Record, TorsionalDamping, TorsionalStiffness
+from ..quantities.record import Record, TorsionalDamping
+from ..quantities.units import Quantity
 from .base import Gear, Names
 from .friction import friction_torque
 
-__all__ = ["LateralMode", "Yaw"]
+__all__ = ["LateralMode", "PolarInertia", "Yaw"]
+
+PolarInertia = Annotated[float, Quantity("kg m^2", above=0, example="6 kg m^2")]
 
 
 class LateralMode(Record):
     """Lateral bending of the strut about its attachment."""
 
-    inertia: Inertia
+    inertia: Annotated[float, Quantity("kg m^2", above=0, example="600 kg m^2")]
     """I_x of all that bends sideways, about its attachment [kg m^2]."""
-    stiffness: TorsionalStiffness
+    stiffness: Annotated[float, Quantity("N m/rad", at_least=0, example="6.1 MN m/rad")]
     """k_delta [N m/rad]."""
     damping: TorsionalDamping
     """c_delta [N m s/rad]."""
-    height: Length
+    height: Annotated[float, Quantity("m", above=0, example="2.5 m")]
     """l_g, from the ground to the attachment [m]."""
 
 
@@ -46,7 +49,7 @@ class Yaw(Gear):
     kind: Literal["yaw"]
     lateral: LateralMode | None = None
     """Has no part in this kind; stands by for ``yaw_bending``."""
-    wheel_polar_inertia: Inertia | None = None
+    wheel_polar_inertia: PolarInertia | None = None
     """I_p of the spinning parts about the axle; without bending it has no effect on yaw [kg m^2]."""
 
     def wheels(self, x: Names, speed: Expr, load: Expr) -> tuple[Wheel, ...]:

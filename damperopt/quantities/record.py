@@ -63,8 +63,8 @@ Stiffness = Annotated[float, Quantity("N/m", above=0, example="4 MN/m")]
 SeriesStiffness = Annotated[float, Quantity("N/m", above=0, at_most=1e10, example="30 MN/m")]
 SecondMoment = Annotated[float, Quantity("m^4", above=0, example="3.4e-6 m^4")]
 Rate = Annotated[float, Quantity("1/s", at_least=0, example="0.1 1/s")]
-Number = Annotated[float, Quantity("1", above=0)]
-Fraction = Annotated[float, Quantity("1", at_least=0)]
+Number = Annotated[float, Quantity("1", above=0, example="1.5")]
+Fraction = Annotated[float, Quantity("1", at_least=0, example="0.2")]
 
 
 class Record(BaseModel):

@@ -381,3 +381,11 @@ def fields_of(kind: type[Record]) -> Iterator[tuple[str, Any]]:
         for part in (field.annotation, *get_args(field.annotation)):
             if isinstance(part, type) and issubclass(part, BaseModel):
                 yield from fields_of(part)
+
+
+def with_sizes(expression: Any, sizes: Sequence[Any]) -> float:
+    """An expression with the sizes of a damper at their starts."""
+    if not sizes or not isinstance(expression, ca.SX):
+        return float(expression)
+    symbols, starts = ca.vertcat(*(size.symbol for size in sizes)), ca.DM([size.start for size in sizes])
+    return float(ca.substitute(expression, symbols, starts))

@@ -1,0 +1,122 @@
+"""Every kind of damper, with the first layout that it goes with."""
+
+import numpy as np
+import pytest
+import standard
+from whole import goes_through_the_commands, is_optimised_and_reported
+
+from damperopt.dampers.base import Context
+from damperopt.expressions.corners import Linear, Smooth
+from damperopt.linkages.assembly import assemblies
+from damperopt.strength.limit_event import limit_event
+from damperopt.study.components import rooms
+
+KINDS = rooms()["dampers"]
+
+
+def home_of(kind):
+    """Block of the layout that a damper goes with: the boeing layout, or the first other one."""
+    layouts = [made.LAYOUT for made in assemblies().values() if made.KIND is kind]
+    assert layouts, f"{kind.__name__} goes with no layout"
+    usual = [layout for layout in layouts if layout is rooms()["linkages"]["boeing"]]
+    return standard.example((usual or layouts)[0])
+
+
+def damper_blocks():
+    for tag, kind in KINDS.items():
+        home = home_of(kind) | {"kind": tag}
+        for i, block in enumerate(standard.blocks(kind, lambda block, home=home: standard.takes(damper=home | block))):
+            yield pytest.param(home | block, id=f"{tag}{' full' * i}")
+
+
+@pytest.fixture(scope="module", params=damper_blocks())
+def study(request):
+    return standard.study_of(damper=request.param)
+
+
+@pytest.fixture
+def at_rest(study):
+    return {state.name: 0.0 for state in study.damper.STATES}
+
+
+POINTS = [(0.0, 0.0), (1e-3, 0.02), (-2e-3, 0.3), (1e-3, -0.5)]
+"""Stroke [m] and rate [m/s], or angle and rate."""
+
+
+def test_equations(study):
+    standard.rest_is_an_equilibrium(study)
+    standard.mirrored_motions_are_motions(study)
+    standard.smooth_goes_to_exact(study)
+    standard.declared_powers_are_kept_exactly(study)
+    standard.record_survives(study)
+
+
+@pytest.mark.parametrize("corners", [Linear(), Smooth()], ids=["linear", "smooth"])
+def test_damper_in_floats_is_its_graph(study, corners):
+    damper, names = study.damper, [state.name for state in study.damper.STATES]
+    variables = list(study.start)
+
+    def everything(stroke, rate, *values):
+        states = dict(zip(names, values, strict=False))
+        design = dict(zip(variables, values[len(names) :], strict=True))
+        made = damper.force(design, states, stroke, rate, Context(4e4, 30.0), corners)
+        assert made.rates.keys() == set(names), "a rate for every state of its own"
+        assert made.outputs.keys() <= {output.name for output in damper.KIND.OUTPUTS}, "outputs as they are declared"
+        inverse = damper.rate(design, states, stroke, 1e3 * rate, Context(4e4, 30.0), corners)
+        more = (damper.series(design), damper.damping(design), damper.peak_force(design, rate))
+        return made.force, made.rates, made.outputs, [value for value in (inverse, *more) if value is not None]
+
+    rest = [*(1e-3 for _ in names), *study.start.values()]
+    standard.agrees_with_its_graph(everything, *([*point, *rest] for point in POINTS))
+
+
+def test_inverse_gives_back_the_rate(study, at_rest):
+    for stroke, rate in POINTS:
+        for corners in (Linear(), standard.Narrow(1e-6)):
+            force = study.damper.force(study.start, at_rest, stroke, rate, Context(4e4, 30.0), corners).force
+            found = study.damper.rate(study.start, at_rest, stroke, force, Context(4e4, 30.0), corners)
+            # a corner is rounded over the rate one way and over the force the other: the more alike, the narrower
+            assert found is None or found == pytest.approx(rate, rel=1e-9, abs=1e-12)
+
+
+def test_damping_is_the_slope_of_the_force(study, at_rest):
+    damper, h = study.damper, 1e-6
+    forces = [damper.force(study.start, at_rest, 0.0, v, Context(4e4, 30.0), Linear()).force for v in (-h, h)]
+    slope, damping = (forces[1] - forces[0]) / (2 * h), damper.damping(study.start)
+    assert slope >= 0, "a damper that drives"
+    assert damping is None or damping == pytest.approx(slope, rel=1e-9)  # of a linear force
+    assert sum(forces) == pytest.approx(0, abs=1e-9 * abs(forces[1])), "a force at rest"
+
+
+def test_parts_weigh(study):
+    """Masses are positive and grow with the loads of the limit event; sizes start between their bounds."""
+    if not study.variables:
+        return
+    damper, link = study.damper, study.damper.linkage(study.start, study.material.youngs_modulus)
+    event = limit_event(study, link, study.start, max(study.envelope.loads))
+    sized = damper.parts(event, study.mass)
+    if sized is None:
+        return
+    sizes = {size.name: size for size in sized.sizes}
+    for size in sizes.values():
+        assert 0 < size.lower < size.start < size.upper
+        assert size.least
+        for least, relaxed in size.least.values():
+            assert float(least) > 0
+            assert relaxed, "a limit that nothing relaxes"
+    for mass in sized.masses.values():
+        assert float(standard.with_sizes(mass, sized.sizes)) > 0
+        assert np.isfinite(float(standard.with_sizes(mass, sized.sizes)))
+
+
+def test_says_what_it_leaves_out(study):
+    assert all(isinstance(words, str) and words for words in study.damper.leaves_out())
+
+
+def test_goes_through_the_commands(study, tmp_path):
+    goes_through_the_commands(study, tmp_path)
+
+
+@pytest.mark.slow
+def test_is_optimised_and_reported(study, tmp_path):
+    is_optimised_and_reported(study, tmp_path)

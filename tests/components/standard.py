@@ -389,3 +389,8 @@ def with_sizes(expression: Any, sizes: Sequence[Any]) -> float:
         return float(expression)
     symbols, starts = ca.vertcat(*(size.symbol for size in sizes)), ca.DM([size.start for size in sizes])
     return float(ca.substitute(expression, symbols, starts))
+
+
+def least(cases: Iterator[Any]) -> list[Any]:
+    """One case of each kind, by the first word of its name: the last that is not full."""
+    return list({case.id.removeprefix("contact ").split()[0]: case for case in cases if "full" not in case.id}.values())

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import standard
-from whole import goes_through_the_commands, is_optimised_and_reported
+from standard import least
+from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.dampers.base import Context
 from damperopt.expressions.corners import Linear, Smooth
@@ -101,8 +102,8 @@ def test_parts_weigh(study):
     for size in sizes.values():
         assert 0 < size.lower < size.start < size.upper
         assert size.least
-        for least, relaxed in size.least.values():
-            assert float(least) > 0
+        for value, relaxed in size.least.values():
+            assert float(value) > 0
             assert relaxed, "a limit that nothing relaxes"
     for mass in sized.masses.values():
         assert float(standard.with_sizes(mass, sized.sizes)) > 0
@@ -117,6 +118,11 @@ def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+def test_is_optimised(study, tmp_path):
+    is_optimised(study, tmp_path)
+
+
 @pytest.mark.slow
-def test_is_optimised_and_reported(study, tmp_path):
-    is_optimised_and_reported(study, tmp_path)
+@pytest.mark.parametrize("study", least(damper_blocks()), indirect=True)
+def test_is_reported(study, tmp_path):
+    is_reported(study, tmp_path)

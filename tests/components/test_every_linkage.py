@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import standard
 from scipy.optimize import root
-from whole import goes_through_the_commands, is_optimised_and_reported
+from standard import least
+from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.linkages.assembly import assemblies
 from damperopt.linkages.spatial import FORESHORTENING
@@ -186,6 +187,11 @@ def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+def test_is_optimised(study, tmp_path):
+    is_optimised(study, tmp_path)
+
+
 @pytest.mark.slow
-def test_is_optimised_and_reported(study, tmp_path):
-    is_optimised_and_reported(study, tmp_path)
+@pytest.mark.parametrize("study", least(layout_blocks()), indirect=True)
+def test_is_reported(study, tmp_path):
+    is_reported(study, tmp_path)

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 import standard
-from whole import goes_through_the_commands, is_optimised_and_reported
+from standard import least
+from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.expressions.corners import Smooth
 from damperopt.ports.wheel import Wheel
@@ -116,6 +117,11 @@ def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+def test_is_optimised(study, tmp_path):
+    is_optimised(study, tmp_path)
+
+
 @pytest.mark.slow
-def test_is_optimised_and_reported(study, tmp_path):
-    is_optimised_and_reported(study, tmp_path)
+@pytest.mark.parametrize("study", least(tyre_blocks()), indirect=True)
+def test_is_reported(study, tmp_path):
+    is_reported(study, tmp_path)

@@ -74,3 +74,5 @@ def test_without_bending_spin_has_no_effect():
     spun, still = (gear_with(kind="yaw", **keys) for keys in ({"wheel_polar_inertia": 6.0}, {}))
     assert spun.gear.kind == "yaw"
     np.testing.assert_array_equal(*(linear_gear(study).matrices([10.0, 90.0], 150e3) for study in (spun, still)))
+    assert any("gyroscopic" in words for words in spun.gear.leaves_out())
+    assert not any("gyroscopic" in words for words in gear_with(wheel_polar_inertia=6.0).gear.leaves_out())

@@ -27,6 +27,7 @@ _HOME = {
     "check_decay": "proof.check",
     "check_grid": "proof.check",
     "combinations": "design",
+    "components": "study.components",
     "critical_speeds": "stability.critical",
     "filled_map": "charts.maps",
     "joint_boundary": "charts.explicit",

@@ -27,7 +27,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
 for command in (optimise, report, analyse, simulate, chart, sweep, thesis, components, validate, init, schema):
-    app.command()(command)
+    app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 
 def main() -> None:

@@ -46,7 +46,7 @@ def components(
 def _facts(kind: Any) -> dict[str, Any]:
     """What a kind declares: description, states, design variables, and keys with units and whether they may be left out."""
     from ..quantities.record import quantity_of
-    from ..study.components import tag_names
+    from ..study.components import description, tag_names
 
     keys = []
     for name, field in kind.model_fields.items():
@@ -56,7 +56,7 @@ def _facts(kind: Any) -> dict[str, Any]:
         choices = " | ".join(map(str, get_args(field.annotation))) if get_origin(field.annotation) is Literal else "block"
         keys.append({"name": name, "unit": quantity.unit if quantity else choices, "required": field.is_required()})
     return {
-        "description": (kind.__doc__ or "").strip().partition("\n")[0],
+        "description": description(kind),
         "from": kind.__module__.partition(".")[0],
         "states": [{"name": state.name, "unit": state.unit, "freedom": state.freedom} for state in getattr(kind, "STATES", ())],
         "variables": [

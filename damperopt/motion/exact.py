@@ -100,9 +100,6 @@ class ExactSimulator:
 
     def __init__(self, study: Study, design: Mapping[str, float] | None = None, model: LinearModel | None = None):
         self.study, self.model = study, LinearModel(study) if model is None else model
-        self.design = study.start if design is None else dict(design)
-        if design is not None:
-            self.model.at(self.design)  # refuses an incomplete design
         corners = Switched()
         dae = build(symbolic(study), corners)
         friction = corners.switches.pop("friction", None)
@@ -116,14 +113,25 @@ class ExactSimulator:
         self.unknowns, self.units = dae.z.numel(), dae.units
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
 
-        inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque), dae.design]
-        known = dae.data, ca.DM(data_values(study))
+        inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
         motion = [dae.ode, step, arguments, ca.SX(dae.outputs["torque_without_friction"])]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
-        self.motion = _Fast(inputs, [ca.substitute(e, *known) for e in motion])
-        self.rows = _Fast(inputs, [ca.substitute(rows, *known)])
-        self.first_guess = _Fast(inputs, [ca.substitute(ca.SX(dae.first_guess()), *known)])
+        self._inputs, self._known = inputs, ca.vertcat(dae.design, dae.data)
+        self._expressions = motion, [rows], [ca.SX(dae.first_guess())]
+        self._take(study.start if design is None else design, complete=design is not None)
+
+    def _take(self, design: Mapping[str, float], complete: bool = True) -> None:
+        """Functions with the numbers of a design in them, which makes them shorter; `ConfigError` if it lacks some."""
+        self.design = dict(design)
+        if not complete and not set(self.model.design_names) <= self.design.keys():
+            return  # calls will give one
+        self.model.at(design)
+        values = ca.DM([*(design[name] for name in self.model.design_names), *data_values(self.study)])
+        self.motion, self.rows, self.first_guess = (
+            _Fast(self._inputs, [ca.substitute(e, self._known, values) for e in expressions])
+            for expressions in self._expressions
+        )
 
     @property
     def gear(self) -> LinearGear:
@@ -133,7 +141,7 @@ class ExactSimulator:
     def with_design(self, design: Mapping[str, float]) -> ExactSimulator:
         """The same, for calls that give no design; nothing is built again."""
         other = copy.copy(self)
-        other.design = dict(design)
+        other._take(design)
         return other
 
     def __call__(
@@ -203,7 +211,6 @@ class _Run:
         self._torque, self._unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
         self._wheel_rate = speed / model.study.gear.wheel_radius
         self._point, self._external = np.array([speed, load, 0.0]), 2
-        self._design = np.array([model.design[name] for name in model.model.design_names])
         self._yaw_rate = model.yaw_rate
         self._x0 = np.array(disturbance.start(model.state_names))
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
@@ -211,7 +218,7 @@ class _Run:
         self._modes[-1] = 0.0
         self._sticks = False
         z = np.zeros(model.unknowns)
-        self._z = model.first_guess(self._x0, z, self._modes, self._point, self._design)[0].copy()
+        self._z = model.first_guess(self._x0, z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
 
@@ -221,16 +228,16 @@ class _Run:
         if self._unbalance:
             self._point[self._external] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
         if not self._z.size:
-            return self._model.motion(x, self._z, self._modes, self._point, self._design)
+            return self._model.motion(x, self._z, self._modes, self._point)
         for _ in range(NEWTON_STEPS):
-            found = self._model.motion(x, self._z, self._modes, self._point, self._design)
+            found = self._model.motion(x, self._z, self._modes, self._point)
             change = np.abs(found[1]).max()
             if change < NEWTON_TOLERANCE:
                 return found
             if not np.isfinite(change):
                 break
             self._z = self._z - found[1]
-        self._z = self._model.first_guess(x, self._z, self._modes, self._point, self._design)[0].copy()
+        self._z = self._model.first_guess(x, self._z, self._modes, self._point)[0].copy()
         raise _CannotClose
 
     def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
@@ -274,7 +281,7 @@ class _Run:
 
     def _row(self, t: float, x: np.ndarray) -> np.ndarray:
         self._evaluated(t, x)
-        return self._model.rows(x, self._z, self._modes, self._point, self._design)[0].copy()
+        return self._model.rows(x, self._z, self._modes, self._point)[0].copy()
 
     def _events(self) -> list[Callable[[float, np.ndarray], float]]:
         """Functions that fall through zero when a corner is passed, friction last."""

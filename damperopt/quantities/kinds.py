@@ -126,7 +126,8 @@ def union_of(classes: Mapping[str, type[Record]], tags: tuple[str, ...], rewrite
         return " ".join(map(str, given))
 
     def prepared(data: Any) -> Any:
-        if short and isinstance(data, str):
+        alone = short and isinstance(data, str)
+        if alone:
             data = {first: data}
         if not isinstance(data, dict):
             return data
@@ -134,7 +135,11 @@ def union_of(classes: Mapping[str, type[Record]], tags: tuple[str, ...], rewrite
         data |= {tag: spellings.get((tag, data[tag]), data[tag]) for tag in tags if isinstance(data.get(tag), str)}
         if named(data) not in classes:
             found = data.get(first)
-            raise refuse(first, "missing key" if found is None else f"{reprlib.repr(found)} is unknown", ", ".join(classes))
+            raise refuse(
+                "" if alone else first,
+                "missing key" if found is None else f"{reprlib.repr(found)} is unknown",
+                ", ".join(classes),
+            )
         return data
 
     def chosen(data: Any) -> str | None:

@@ -20,7 +20,9 @@ __all__ = [
     "GEAR",
     "ORDERS",
     "TYRE",
+    "components",
     "declared_units",
+    "description",
     "design_variables",
     "gears",
     "optimisable",
@@ -73,6 +75,22 @@ def rooms() -> dict[str, dict[str, type[Any]]]:
         "linkages": dict(layouts()),
         "dampers": dict(dampers()),
     }
+
+
+def components() -> dict[str, dict[str, str]]:
+    """Every kind of component by room and tag, with its description.
+
+    Examples
+    --------
+    >>> components()["contact lines"]["leading_point"]
+    'A string led by its foremost contact point; what that point laid down is forgotten at once (straight tangent).'
+    """
+    return {room: {tag: description(kind) for tag, kind in kinds.items()} for room, kinds in rooms().items()}
+
+
+def description(kind: type[Any]) -> str:
+    """First line of what a kind says of itself."""
+    return (kind.__doc__ or "").strip().partition("\n")[0]
 
 
 def tag_names() -> tuple[str, ...]:

@@ -229,7 +229,7 @@ def test_command_writes_dataset_table_and_figure_and_goes_on(file, tmp_path):
 @pytest.mark.slow
 def test_interrupt_keeps_what_was_finished_and_the_same_command_goes_on(configs, tmp_path):
     path, out = tmp_path / "long.yaml", tmp_path / "out"
-    text = f"base: {configs / 'main_gear.yaml'}\nvary: {{requirements.stability_margin: {{from: 0.05, to: 0.2, points: 8}}}}\n"
+    text = f"base: {configs / 'minimal.yaml'}\nvary: {{requirements.stability_margin: {{from: 0.5, to: 2, points: 8}}}}\n"
     path.write_text(text)
     running = subprocess.Popen([*COMMAND, path, "-o", out, "--workers", "1"], stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 120
@@ -353,7 +353,7 @@ def test_a_load_is_a_number_of_its_axis(main_gear):
     assert sweep.points[3].study.envelope.loads == (125e3,)
 
 
-@pytest.mark.parametrize("text", ["{", "[]", "{}"])
+@pytest.mark.parametrize("text", ["{", "[]"])
 def test_a_marker_that_cannot_be_read_is_made_anew(file, tmp_path, text):
     out = tmp_path / "out"
     out.mkdir()

@@ -24,9 +24,9 @@ class BrushLaw(SlipLaw):
     law: Literal["brush", "fiala"]
     cornering_stiffness: Annotated[float, Quantity("N/rad", above=0, example="440 kN/rad")]
     """C_Fa, slope of the side force at zero slip, for any load [N/rad]."""
-    friction: Annotated[float, Quantity("1", above=0, at_most=2)]
+    friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")]
     """mu of the footprint at zero slip [1]."""
-    sliding_friction: Annotated[float, Quantity("1", above=0, at_most=2)] | None = None
+    sliding_friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")] | None = None
     """mu at a slip of 1 and beyond, linear between; left out: as `friction` [1]."""
 
     @model_validator(mode="after")

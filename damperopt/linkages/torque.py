@@ -146,6 +146,7 @@ class _Chain:
         rate = self._damper.rate(self._design, self._own, stroke, force, self._context, self._corners)
         if rate is None:
             rate = symbol("damper_speed")
-            scale = self._damper.damping(self._design) or 1.0
+            damping = self._damper.damping(self._design)  # a symbol has no truth
+            scale = 1.0 if damping is None else damping
             self._unknowns.append((rate, 0, (self._force(stroke, rate).force - force) / scale))
         return rate

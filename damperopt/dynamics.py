@@ -21,7 +21,7 @@ import casadi as ca
 
 from .dampers.base import Context
 from .expressions.corners import Corners, Linear
-from .expressions.dae import DAE
+from .expressions.dae import DAE, NEWTON_STEPS
 from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
 from .quantities.named import State
 from .strength.members import root_stress_of_force
@@ -95,6 +95,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         data_names=symbols.names,
         outputs=outputs,
         output_units={name: units[name] for name in outputs},
+        newton_steps=torque.newton_steps or NEWTON_STEPS,
     )
 
 

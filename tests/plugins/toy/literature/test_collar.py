@@ -9,7 +9,8 @@ name: collar
 gear:
   {kind: steering_collar, yaw_inertia: 100 kg m^2, caster_length: 0.12 m, wheel_radius: 0.362 m,
    lateral: {inertia: 600 kg m^2, stiffness: 6.1e6 N m/rad, damping: 300 N m s/rad, height: 2.5 m},
-   collar: {inertia: 5 kg m^2, link_stiffness: 5e5 N m/rad, steering_stiffness: 1.5e6 N m/rad, steering_damping: 2000 N m s/rad}}
+   collar: {inertia: 5 kg m^2, link_stiffness: 5e5 N m/rad,
+            steering_stiffness: 1.5e6 N m/rad, steering_damping: 2000 N m s/rad}}
 tyre:
   {law: arctangent, half_contact_length: 0.1 m, relaxation_length: 0.3 m, cornering_coefficient: 0.002 1/rad,
    aligning_coefficient: 1 m/rad, aligning_slip_limit: 10 deg, tread_width_moment: 570 N m^2/rad}

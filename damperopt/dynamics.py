@@ -20,8 +20,9 @@ from typing import Any
 import casadi as ca
 
 from .dampers.base import Context
+from .errors import ConfigError
 from .expressions.corners import Corners, Linear
-from .expressions.dae import DAE
+from .expressions.dae import DAE, NEWTON_STEPS
 from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
 from .quantities.named import State
 from .strength.members import root_stress_of_force
@@ -77,8 +78,11 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         if member.inertia is not None:
             units["arm_stress"] = "Pa"
             outputs["arm_stress"] = root_stress_of_force(member, torque.outputs["spring_force"], study)
+    names = [state.name for state in states]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise ConfigError(f"state '{twice[0]}' is declared twice by the components of this study; allowed: each name once")
     if unnamed := outputs.keys() - units.keys():
-        raise ValueError(f"output '{min(unnamed)}' is declared by no component, so that it has no unit")
+        raise ConfigError(f"output '{min(unnamed)}' is declared by no component; allowed: outputs that one names with its unit")
     return DAE(
         x=ca.vertcat(*x.values(), *(value for string in strings for value in string), *torque.states.values()),
         z=ca.vertcat(ca.SX(0, 1), *torque.unknowns),
@@ -95,6 +99,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         data_names=symbols.names,
         outputs=outputs,
         output_units={name: units[name] for name in outputs},
+        newton_steps=torque.newton_steps or NEWTON_STEPS,
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from ..expressions.calculus import Expr
+from ..expressions.calculus import Expr, slope
 from ..expressions.corners import Corners, Linear
 from ..ports.sizing import Force, LimitEvent, Sized
 from ..quantities.named import DesignVariable, Output, State
@@ -99,9 +99,10 @@ class Damper(Record):
         return None
 
     def damping(self, design: Mapping[str, Expr]) -> Expr | None:
-        """Equivalent viscous damping for small motion [N s/m]; None where no one number says it."""
-        force = self.force(design, dict.fromkeys((s.name for s in self.STATES), 0.0), 0.0, 1.0, Context(), Linear())
-        return None if self.STATES else force.force
+        """Slope of the force over the rate at rest [N s/m]; None where no one number says it."""
+        if self.STATES:
+            return None
+        return slope(lambda rate: self.force(design, {}, 0.0, rate, Context(), Linear()).force, 0.0)
 
     def peak_force(self, design: Mapping[str, Expr], rate: Expr) -> Expr:
         """Force at the largest rate of the limit event [N], as the linear model has it."""

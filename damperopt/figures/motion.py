@@ -46,7 +46,7 @@ def trajectory(record: Trajectory, motion: Motion, after: str = "") -> Any:
     """
     panels = [(label, [c for c in curves if c[0] in {*record.states, *record.outputs}]) for label, curves in PANELS]
     drawn = {name for _, curves in panels for name, _ in curves} | ELSEWHERE
-    panels += [(name.replace("_", " "), [(name, "")]) for name in record.states if name not in drawn]
+    panels += [(name.capitalize().replace("_", "\n"), [(name, "")]) for name in record.states if name not in drawn]
     panels = [(label, curves) for label, curves in panels if curves]
     with styled():
         figure, rows = plt.subplots(len(panels), sharex=True, figsize=(8, 1 + 1.5 * len(panels)), squeeze=False)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from ..dampers.base import Damper
 from ..errors import ConfigError
 from ..expressions.calculus import Expr
-from ..quantities.kinds import kinds, union_of
+from ..quantities.kinds import home_of, kinds, tags_of, union_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from .base import Layout
@@ -75,11 +75,16 @@ def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
     ConfigError
         If a key belongs to both.
     """
-    both = (set(layout.model_fields) & set(damper.model_fields)) - set(Joints.model_fields)
+    fields, joints = (set(layout.model_fields), set(damper.model_fields)), set(Joints.model_fields)
+    if taken := sorted((fields[0] | fields[1]) & joints):
+        owner = layout if taken[0] in fields[0] else damper
+        raise ConfigError(f"{home_of(owner)} declares '{taken[0]}', which is a key of the joints; allowed: other names")
+    both = fields[0] & fields[1]
     names = [v.name for v in (*damper.VARIABLES, *layout.VARIABLES)]
     twice = sorted(both | {name for name in names if names.count(name) > 1})
     if twice:
-        raise ConfigError(f"{layout.__name__} and {damper.__name__} both declare '{twice[0]}'; allowed: each key once")
+        words = f"{home_of(layout)} and {home_of(damper)} both declare '{twice[0]}'"
+        raise ConfigError(f"{words}; allowed: each key once")
     bases = (Assembly, layout, damper) if layout.ROTARY else (Assembly, layout, damper, Joints)
     facts = {
         "LAYOUT": layout,
@@ -91,6 +96,8 @@ def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
         "__annotations__": dict.fromkeys(("LAYOUT", "KIND", "VARIABLES", "ROTARY"), ClassVar[Any]),
     }
     name = f"{layout.__name__}{damper.__name__}"
+    if name in globals():  # of a plug-in whose class is called the same
+        name += f"_{tags_of(layout, 'topology')[0]}_{tags_of(damper, 'kind')[0]}"
     made = types.new_class(name, bases, {}, lambda namespace: namespace.update(facts))
     globals().setdefault(name, made)  # where pickle looks for it
     return made

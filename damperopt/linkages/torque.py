@@ -23,6 +23,10 @@ from .joints import beyond_gap, stop_force
 
 __all__ = ["CHAIN_STATES", "OUTPUTS", "ROTARY_OUTPUTS", "damper_torque"]
 
+RATE_STEPS = 24
+"""Of Newton's method for the rate of a damper without an inverse: the first-order guess lies far outside where the force grows
+with a high power p of the rate, and each step then takes 1/p off."""
+
 CHAIN_STATES = (State("dashpot_stroke", "m", "damper"), State("link_angle", "rad", "damper"))
 """States that compliances add."""
 
@@ -83,6 +87,7 @@ class _Chain:
         self._corners, self._attachment, self._context = corners, attachment, context
         self._own = {state.name: symbol(state.name) for state in damper.STATES}
         self._unknowns: list[tuple[Expr, Expr, Expr]] = []  # symbol, value at rest, residual
+        self._newton_steps: int | None = None
 
     def torque(self) -> Torque:
         """The four cases: with and without compliance of the links (k_t) and in series with the damper (k_s)."""
@@ -130,6 +135,7 @@ class _Chain:
             (*link.rest, *(rest for _, rest, _ in unknowns)),
             (*closure, *(residual for _, _, residual in unknowns)),
             dict(zip((o.name for o in names), shown, strict=False)) | dict(own.outputs),
+            self._newton_steps,
         )
 
     def _through_links(self, k_t: Expr, twist: Expr) -> Expr:
@@ -145,7 +151,8 @@ class _Chain:
         """Rate of the damper at a force: in closed form, or as an unknown whose equation is the force itself."""
         rate = self._damper.rate(self._design, self._own, stroke, force, self._context, self._corners)
         if rate is None:
-            rate = symbol("damper_speed")
-            scale = self._damper.damping(self._design) or 1.0
+            rate, self._newton_steps = symbol("damper_speed"), RATE_STEPS
+            damping = self._damper.damping(self._design)  # a symbol has no truth
+            scale = 1.0 if damping is None else damping
             self._unknowns.append((rate, 0, (self._force(stroke, rate).force - force) / scale))
         return rate

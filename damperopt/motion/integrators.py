@@ -21,13 +21,9 @@ import numpy as np
 from .. import interrupts
 from ..expressions.dae import DAE, eliminate
 
-__all__ = ["ENGINES", "NEWTON_STEPS", "Integrator", "best_engine", "has_compiler"]
+__all__ = ["ENGINES", "Integrator", "best_engine", "has_compiler"]
 
 ENGINES = ("erk", "cvodes", "idas")
-
-NEWTON_STEPS = 6
-"""Of `dae.eliminate`: enough for the residual to reach rounding at yaw angles up to 0.6 rad."""
-
 
 IDAS_FLOOR, LEAST_IDAS = 3e-12, 1e-12
 """Relative tolerance below which IDAS no longer finds a first step, with algebraic unknowns and without."""
@@ -100,7 +96,7 @@ class Integrator:
         compiled: bool | None = None,
     ):
         self.steps, self.engine = steps, engine
-        model = dae if engine == "idas" else eliminate(dae, NEWTON_STEPS)
+        model = dae if engine == "idas" else eliminate(dae)
         self._n, self._m = model.x.numel(), model.z.numel()
         self._d = dae.design.numel() if sensitivities else 0
         duration, time, start, torque, unbalance, wheel_rate = (

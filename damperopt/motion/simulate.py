@@ -17,7 +17,7 @@ from ..stability.linear import LinearModel
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 from ..symbols import data_values, symbolic
-from .integrators import ENGINES, NEWTON_STEPS, Integrator, best_engine
+from .integrators import ENGINES, Integrator, best_engine
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
 
@@ -207,7 +207,7 @@ class Outputs:
     """
 
     def __init__(self, dae: DAE, study: Study):
-        model = eliminate(dae, NEWTON_STEPS)
+        model = eliminate(dae)
         outputs = {"yaw_acceleration": model.ode[model.index("yaw_rate")], **model.outputs}
         self.names = (*model.state_names, *outputs)
         self._data = ca.DM(data_values(study))

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from ..expressions.dae import DAE, eliminate
-from .integrators import NEWTON_STEPS, Solution
+from .integrators import Solution
 
 __all__ = ["TangentMotion", "output_functions", "weights_at_peak"]
 
@@ -56,7 +56,7 @@ class TangentMotion:
 
 def output_functions(dae: DAE, names: Sequence[str]) -> tuple[ca.Function, ca.Function]:
     """Outputs or states by name, and their d/d ln(design variable) given the sensitivities of the states."""
-    model = eliminate(dae, NEWTON_STEPS)
+    model = eliminate(dae)
     outputs = ca.vertcat(*(model.x[model.index(name)] if name in model.state_names else model.outputs[name] for name in names))
     outputs = ca.substitute(outputs, model.yaw_torque, 0)
     inputs = [model.design, model.speed, model.load, model.data]

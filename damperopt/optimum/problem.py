@@ -165,9 +165,10 @@ class DesignProblem:
         return {name: (float(v), float(lim)) for name, (v, lim) in zip(self.constraint_names, pairs, strict=True)}
 
     def yaw_numbers(self, design: Mapping[str, float]) -> dict[str, float]:
-        """Effective torsional stiffness and damping of a design."""
+        """Effective torsional stiffness of a design, and its damping where one number says it."""
         stiffness, damping = self._yaw(self._vector(design), self.data)
-        return {"torsional_stiffness": float(stiffness), "torsional_damping": float(damping)}
+        numbers = {"torsional_stiffness": float(stiffness)}
+        return numbers | ({"torsional_damping": float(damping)} if self.has_one_damping else {})
 
     def limit_event(self, design: Mapping[str, float], factors: np.ndarray | None = None) -> dict[str, float]:
         """Peaks of the limit event by name [SI], in the order of `measure.PEAKS`."""

@@ -114,9 +114,11 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
+    in_series = study.damper.links(result.design), study.damper.series(result.design)
+    least = 0.0 if in_series == (None, None) else c / 100  # without damping a node in series has no equation
     return chart(
         study,
-        (damping, 0.0, 2.5 * c),
+        (damping, least, 2.5 * c),
         (spring, 0.0, 2.5 * k),
         vary=("speed", speeds),
         margin=margin,

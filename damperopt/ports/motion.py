@@ -60,6 +60,8 @@ class Torque:
         their values at rest and the equations = 0.
     outputs : mapping of str to Expr
         By declared name [SI].
+    newton_steps : int or None
+        That the unknowns need from their first-order guess; None: as few as a closed linkage.
     """
 
     torque: Expr
@@ -69,3 +71,4 @@ class Torque:
     rest: tuple[Expr, ...] = ()
     residuals: tuple[Expr, ...] = ()
     outputs: Mapping[str, Expr] = field(default_factory=dict)
+    newton_steps: int | None = None

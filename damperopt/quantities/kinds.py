@@ -15,11 +15,14 @@ from pydantic import BeforeValidator, Discriminator, Tag
 from ..errors import ConfigError
 from .record import Record, refuse
 
-__all__ = ["kinds", "one_of", "tags_of", "union_of"]
+__all__ = ["home_of", "kinds", "one_of", "tags_of", "union_of"]
 
 T = TypeVar("T", bound=Record)
 
 Rewrite: TypeAlias = Callable[[dict[str, Any]], dict[str, Any]]
+
+HOMES: dict[type[Record], str] = {}
+"""Where each kind that was found comes from, for messages."""
 
 PACKAGE = __name__.rpartition(".quantities")[0]
 
@@ -28,6 +31,11 @@ def tags_of(kind: type[Record], tag: str) -> tuple[str, ...]:
     """Values of the tag of a class, the one that is written first; a class without one is a base and has none."""
     field = kind.model_fields.get(tag)
     return get_args(field.annotation) if field is not None and get_origin(field.annotation) is Literal else ()
+
+
+def home_of(kind: type[Record]) -> str:
+    """Class and distribution of a kind, for messages: a plug-in is mended by those who made it."""
+    return f"{kind.__name__} of {HOMES.get(kind, kind.__module__)}"
 
 
 def kinds(folder: str, base: type[T], tag: str) -> dict[str, type[T]]:
@@ -58,13 +66,15 @@ def kinds(folder: str, base: type[T], tag: str) -> dict[str, type[T]]:
 @cache
 def _kinds(folder: str, base: type[T], tag: str) -> dict[str, type[T]]:
     found: dict[str, type[T]] = {}
-    home: dict[str, str] = {}
+    taken: dict[str, type[T]] = {}  # older spellings of a tag included
 
     def add(kind: type[T], source: str) -> None:
-        for name in tags_of(kind, tag)[:1]:
-            if name in found and found[name] is not kind:
-                raise ConfigError(f"{tag} '{name}' is used twice, by {home[name]} and by {source}; allowed: each once")
-            found[name], home[name] = kind, source
+        HOMES[kind] = source
+        for name in tags_of(kind, tag):
+            other = taken.setdefault(name, kind)
+            if other is not kind:
+                raise ConfigError(f"{tag} '{name}' is used twice, by {home_of(other)} and {home_of(kind)}; allowed: each once")
+        found.update((name, kind) for name in tags_of(kind, tag)[:1])
 
     package = import_module(f"{PACKAGE}.{folder}")
     for _, name, _ in pkgutil.iter_modules(package.__path__):

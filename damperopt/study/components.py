@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from ..errors import ConfigError
 from ..gears.base import Gear
 from ..linkages.assembly import assemblies, assembly_type, dampers, layouts
 from ..linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS
-from ..quantities.kinds import kinds, one_of, tags_of
+from ..quantities.kinds import home_of, kinds, one_of, tags_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from ..tyres.assembly import contact_lines, slip_laws, tyre_type
@@ -113,7 +114,9 @@ def design_variables() -> dict[str, DesignVariable]:
         for variable in kind.VARIABLES:
             other = found.setdefault(variable.name, variable)
             if other.unit != variable.unit:
-                raise ValueError(f"design variable '{variable.name}' is declared in {other.unit} and in {variable.unit}")
+                units = f"in {variable.unit}, elsewhere in {other.unit}"
+                words = f"design variable '{variable.name}' is declared by {home_of(kind)} {units}"
+                raise ConfigError(f"{words}; allowed: one unit for a name")
     return found
 
 

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from ..errors import ConfigError
-from ..quantities.kinds import kinds, one_of, union_of
+from ..quantities.kinds import home_of, kinds, one_of, tags_of, union_of
 from ..quantities.record import refuse
 from .base import ContactLine, SlipLaw, Tyre
 
@@ -33,7 +33,7 @@ def tyre(law: type[SlipLaw]) -> type[Any]:
     """Record class of a tyre with a slip law and any contact line."""
     twice = sorted((set(law.model_fields) & set(Tyre.model_fields)) - {"law"})
     if twice:
-        raise ConfigError(f"{law.__name__} declares '{twice[0]}', which every tyre has; allowed: other names")
+        raise ConfigError(f"{home_of(law)} declares '{twice[0]}', which every tyre has; allowed: other names")
     lines: Any = one_of("tyres.contact", ContactLine, "contact", _contact_block, short=True)
     facts = {
         "LAW": law,
@@ -43,6 +43,7 @@ def tyre(law: type[SlipLaw]) -> type[Any]:
         "contact": contact_lines()[DEFAULT_CONTACT](contact=DEFAULT_CONTACT),
     }
     name = f"{law.__name__}Tyre"
+    name = name if name not in globals() else f"{name}_{tags_of(law, 'law')[0]}"  # of a plug-in whose class is called the same
     made = types.new_class(name, (law, Tyre), {}, lambda namespace: namespace.update(facts))
     globals().setdefault(name, made)  # where pickle looks for it
     return made

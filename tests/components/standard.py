@@ -25,7 +25,6 @@ from damperopt import ConfigError, Study, loads
 from damperopt.dynamics import build
 from damperopt.expressions.corners import Smooth, Switched
 from damperopt.expressions.dae import DAE, eliminate
-from damperopt.motion.integrators import NEWTON_STEPS
 from damperopt.proof.rationals import evaluate
 from damperopt.quantities.record import Record, quantity_of
 from damperopt.stability.linear import LinearModel
@@ -170,7 +169,7 @@ def states_near_rest(dae: DAE, seed: int, size: float = SMALL) -> np.ndarray:
 
 def rates_of(study: Study, corners: Any) -> Callable[[np.ndarray], np.ndarray]:
     """State -> its rates, with every closed loop closed, at a speed and load of the envelope."""
-    dae = eliminate(build(symbolic(study), corners), NEWTON_STEPS)
+    dae = eliminate(build(symbolic(study), corners))
     function = ca.Function("rates", [dae.x, *dae.parameters], [ca.vertcat(dae.ode, ca.SX(dae.outputs["unclosed"]))])
     point = [list(study.start.values()), *_point(study), data_values(study), 0.0]
 

@@ -1,0 +1,1 @@
+"""Components of a gear that another distribution brings."""

@@ -13,6 +13,7 @@ import yaml
 from pydantic import ValidationError, model_validator
 
 from ..errors import ConfigError
+from ..linkages.assembly import assemblies
 from ..quantities.named import DesignVariable
 from ..quantities.record import Name, Record, quantity_of, refuse
 from ..reading import printable
@@ -134,6 +135,9 @@ class Study(Record):
         data = self.model_dump(exclude_none=True)
         if "gear__order" in changes:  # an older way to name the kind, which would contradict it
             data["gear"].pop("kind")
+        topology = changes.get("damper__topology")
+        if "damper__kind" not in changes and topology and f"{topology} {data['damper']['kind']}" not in assemblies():
+            data["damper"].pop("kind")  # it does not go with the new layout, which has a kind of its own
         data = changed(data, {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)

@@ -3,13 +3,17 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: optimise test check format benchmark docs notebooks clean
+.PHONY: optimise test verify check format benchmark docs notebooks clean
 
 optimise: $(VENV)/installed
 	$(BIN)/damperopt optimise configs/main_gear.yaml
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not verify"
+
+# before a version: what takes longer than a commit may wait
+verify: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m verify
 
 # green before each commit: format, lint, types, import contracts, fast tests
 check: $(VENV)/installed-dev
@@ -17,7 +21,7 @@ check: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -q -m "not slow"
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -q -m "not slow and not verify"
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format .

@@ -22,6 +22,9 @@ from damperopt.study.scope import covers
 COMMAND = [sys.executable, "-c", "from damperopt.cli import main; main()", "report"]
 
 
+pytestmark = pytest.mark.xdist_group("report")  # one optimisation and one page serve all
+
+
 @pytest.fixture(scope="module")
 def solved(request):
     study = damperopt.load(request.config.rootpath / "configs" / "main_gear.yaml").replace(solver__starts=4)

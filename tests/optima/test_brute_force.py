@@ -9,6 +9,9 @@ from damperopt.optimum.problem import DesignProblem
 
 pytestmark = pytest.mark.slow
 
+LONGER = [pytest.param(topology, marks=pytest.mark.verify) for topology in ("utas", "arreaza")]
+"""Layouts that `make verify` looks at too."""
+
 SPEEDS = np.unique(np.concatenate([np.geomspace(5, 100, 30), np.linspace(20, 60, 21)]))
 
 
@@ -25,7 +28,7 @@ def lightest_on_grid(study, axes, lighter_than):
     return np.inf
 
 
-@pytest.mark.parametrize("topology", ["boeing", "utas", "arreaza"])
+@pytest.mark.parametrize("topology", ["boeing", *LONGER])
 def test_no_grid_point_of_the_whole_box_is_lighter(topology, main_gear, optimum):
     study = main_gear.replace(damper__topology=topology)
     counts = {"boeing": (24, 24, 24, 24), "utas": (15, 15, 13, 13, 9), "arreaza": (15, 15, 13, 13, 9)}[topology]
@@ -44,7 +47,7 @@ def test_no_grid_point_of_the_whole_box_is_lighter(topology, main_gear, optimum)
     assert np.isfinite(lightest_on_grid(study, axes, lighter_than=4 * best))  # the grid does hold designs
 
 
-@pytest.mark.parametrize("topology", ["boeing", "utas", "arreaza"])
+@pytest.mark.parametrize("topology", ["boeing", *LONGER])
 def test_grid_around_the_optimum_is_nowhere_lighter_and_comes_close(topology, main_gear, optimum):
     study = main_gear.replace(damper__topology=topology)
     result = optimum(topology)

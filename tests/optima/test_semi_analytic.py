@@ -66,7 +66,7 @@ def cheapest_layout(problem, k_psi, c_psi, start):
     return (solution.fun, solution.x) if feasible else (np.inf, start)
 
 
-@pytest.mark.parametrize("topology", ["boeing", "arreaza"])
+@pytest.mark.parametrize("topology", [pytest.param("boeing", marks=pytest.mark.verify), "arreaza"])
 def test_optimum_found_along_the_border_of_the_stable_region(topology, main_gear, optimum):
     problem = DesignProblem(main_gear.replace(damper__topology=topology))
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...motion.simulate import Simulator
 from ...motion.trajectory import Motion, Trajectory, motion_of
-from ...stability.linear import linear_gear
+from ...stability.linear import LinearModel
 from ...study.study import Study
 from .charts import LOAD, STEEL
 
@@ -108,10 +108,12 @@ def respond(figure: ThesisResponse, study: Study, geometry: str) -> list[Respons
     else:
         gear = study.replace(damper={"topology": figure.topology, "geometry": geometry}, material=STEEL)
     layout = {"L": 0.6, "gamma": float(np.deg2rad(31.0))}
-    found = []
+    model, found = LinearModel(gear), []
+    run = Simulator(gear, model=model)
     for given in figure.designs:
         design = {name: value for name, value in {**layout, **given}.items() if name in gear.start}
-        trajectory = Simulator(gear, design)(figure.speed, figure.load, {"release": dict(figure.release)}, figure.seconds)
-        abscissa = linear_gear(gear, design).abscissa(figure.speed, figure.load)[0]
+        release = {"release": dict(figure.release)}
+        trajectory = run(figure.speed, figure.load, release, figure.seconds, design=design)
+        abscissa = model.at(design).abscissa(figure.speed, figure.load)[0]
         found.append(Response(design, float(abscissa), trajectory, motion_of(trajectory)))
     return found

@@ -36,6 +36,10 @@ PATIENCE = 60.0
 """Seconds of silence after which a scheduler counts as lost, though its connection stands."""
 
 
+PATIENCE = float(os.environ.get("DAMPEROPT_SCHEDULER_PATIENCE", "10"))
+"""Seconds for which a scheduler is looked for."""
+
+
 def cores() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -229,7 +233,7 @@ def _client(address: str) -> Iterator[Client]:
     level = log.level
     log.setLevel(logging.CRITICAL + 1)  # what it says of a lost scheduler, with a traceback, is said once and by us
     try:
-        client = Client(address, timeout=10)
+        client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
         raise ConfigError(
             f"--scheduler: {address}: no scheduler answers ({error}); allowed: tcp://HOST:PORT of a running one"

@@ -1,6 +1,7 @@
 """The command `sweep`: its files, interruption, its folder."""
 
 import json
+import os
 import signal
 import subprocess
 import time
@@ -68,7 +69,10 @@ def test_two_sweeps_in_one_folder_are_refused_and_leavings_of_a_dead_one_are_swe
 
 def test_no_scheduler_is_said_in_one_line(file, tmp_path):
     done = subprocess.run(
-        [*COMMAND, file, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9"], capture_output=True, text=True
+        [*COMMAND, file, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9"],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"DAMPEROPT_SCHEDULER_PATIENCE": "1"},
     )
     assert done.returncode == 2
     assert "no scheduler answers" in done.stderr

@@ -28,7 +28,7 @@ def compared(study, design, x, y, margin, load=150e3):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.verify) for seed in (2, 3))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.verify) for seed in (1, 2, 3))])
 @pytest.mark.parametrize("plane", range(len(PLANES)))
 def test_maps_of_random_gears(main_gear, seed, plane):
     """Values to 1e-7 of the largest root (two equal roots have half the digits), sides wherever they are clear."""

@@ -32,9 +32,11 @@ __all__ = [
     "process_pool",
 ]
 
-PATIENCE = 60.0
+SILENCE = 60.0
 """Seconds of silence after which a scheduler counts as lost, though its connection stands."""
 
+A_MOMENT = 10.0
+"""Seconds that a killed pool is given to clear up."""
 
 PATIENCE = float(os.environ.get("DAMPEROPT_SCHEDULER_PATIENCE", "10"))
 """Seconds for which a scheduler is looked for."""
@@ -122,9 +124,12 @@ def _start_fork_server() -> None:
 def _kill(pool: ProcessPoolExecutor) -> None:
     """End the workers in the middle of their work; without it the interpreter waits for them at its end."""
     processes = list((getattr(pool, "_processes", None) or {}).values())  # public from Python 3.14 on: kill_workers
+    manager = getattr(pool, "_executor_manager_thread", None)
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
         process.kill()
+    if manager is not None:
+        manager.join(A_MOMENT)  # else the interpreter's end may write to the pipe that it closes
 
 
 class SchedulerLost(DamperoptError):
@@ -144,16 +149,16 @@ class _Cluster(Executor):
         return self._inner.submit(fn, *given, **named)
 
     def check(self) -> None:
-        """Raise `SchedulerLost` where the connection is lost, or nothing has been heard for `PATIENCE`."""
+        """Raise `SchedulerLost` where the connection is lost, or nothing has been heard for `SILENCE`."""
         now = time.monotonic()
-        if self._question is None and now - self._answered > PATIENCE / 10:
+        if self._question is None and now - self._answered > SILENCE / 10:
             loop: Any = self._client.loop
             self._question = asyncio.run_coroutine_threadsafe(self._client.scheduler.identity(), loop.asyncio_loop)
         elif self._question is not None and self._question.done():
             if self._question.exception() is None:
                 self._answered = now
             self._question = None
-        if self._client.status != "running" or now - self._answered > PATIENCE:
+        if self._client.status != "running" or now - self._answered > SILENCE:
             raise SchedulerLost(f"scheduler lost ({self._client.scheduler.address})")
 
 

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import threading
+import time
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -104,3 +106,18 @@ def test_a_cluster_gives_the_same_and_survives_the_loss_of_a_worker(nose, tmp_pa
 def parts_by_process(client):
     """Program of a worker that differs from the client's."""
     return {"damperopt": "0.1.0+client" if os.getpid() == client else "0.1.0+worker"}
+
+
+def test_a_pool_that_is_left_by_an_exception_leaves_no_thread_behind():
+    """One that still closes the pipe of its pool while the interpreter ends would print a traceback after Ctrl-C."""
+
+    def left_at_work():
+        with process_pool(2) as pool:
+            for _ in range(2):
+                pool.submit(time.sleep, 60.0)
+            raise KeyboardInterrupt
+
+    before = set(threading.enumerate())
+    with pytest.raises(KeyboardInterrupt):
+        left_at_work()
+    assert not [thread for thread in set(threading.enumerate()) - before if "ExecutorManager" in type(thread).__name__]

@@ -23,6 +23,7 @@ from .dampers.base import Context
 from .errors import ConfigError
 from .expressions.corners import Corners, Linear
 from .expressions.dae import DAE, NEWTON_STEPS
+from .linkages.elastic import elastic_linkage
 from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
 from .quantities.named import State
 from .strength.members import root_stress_of_force
@@ -51,7 +52,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     """
     study, corners = symbols.study, corners or Linear()
     gear, tyre, damper = study.gear, study.tyre, study.damper
-    design = {variable.name: ca.SX.sym(variable.name) for variable in study.variables}
+    design = {variable.name: ca.SX.sym(variable.name) for variable in study.damper.variables()}
     speed, load, yaw_torque = ca.SX.sym("speed"), ca.SX.sym("load"), ca.SX.sym("yaw_torque")
 
     x = {state.name: ca.SX.sym(state.name) for state in gear.STATES}
@@ -59,7 +60,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
-    link = damper.linkage(design, study.material.youngs_modulus)
+    link = elastic_linkage(study, design)
     attachment = gear.attachments(x)["damper"]
     torque = damper_torque(damper, link, design, corners, attachment, Context(load, speed))
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)
@@ -75,16 +76,17 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         outputs |= {_named(name, i, len(wheels)): value for name, value in contact.outputs.items()}
         units |= {_named(output.name, i, len(wheels)): output.unit for output in tyre.OUTPUTS}
     for member in damper.members(design):
-        if member.inertia is not None:
+        if member.kind == "arm":
             units["arm_stress"] = "Pa"
             outputs["arm_stress"] = root_stress_of_force(member, torque.outputs["spring_force"], study)
+    values = [*x.values(), *(value for string in strings for value in string), *torque.states.values()]
     names = [state.name for state in states]
     if twice := [name for name in names if names.count(name) > 1]:
         raise ConfigError(f"state '{twice[0]}' is declared twice by the components of this study; allowed: each name once")
     if unnamed := outputs.keys() - units.keys():
         raise ConfigError(f"output '{min(unnamed)}' is declared by no component; allowed: outputs that one names with its unit")
     return DAE(
-        x=ca.vertcat(*x.values(), *(value for string in strings for value in string), *torque.states.values()),
+        x=ca.vertcat(*values),
         z=ca.vertcat(ca.SX(0, 1), *torque.unknowns),
         design=ca.vertcat(ca.SX(0, 1), *design.values()),
         data=symbols.data,
@@ -99,6 +101,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         data_names=symbols.names,
         outputs=outputs,
         output_units={name: units[name] for name in outputs},
+        relaxed=ca.vertcat(*(torque.relaxed.get(state.name, symbol) for state, symbol in zip(states, values, strict=True))),
         newton_steps=torque.newton_steps or NEWTON_STEPS,
     )
 

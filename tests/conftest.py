@@ -21,7 +21,7 @@ def configs() -> Path:
 @pytest.fixture(scope="session")
 def main_gear_with_decay(configs) -> damperopt.Study:
     """The thesis' main gear, Table 0.1, as it is shipped."""
-    return damperopt.load(configs / "main_gear.yaml")
+    return damperopt.load(configs / "thesis_gear.yaml")
 
 
 @pytest.fixture(scope="session")

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from ..expressions.calculus import Expr, slope
 from ..expressions.corners import Corners, Linear
+from ..ports.linkage import Compliant
 from ..ports.sizing import Force, LimitEvent, Sized
 from ..quantities.named import DesignVariable, Output, State
 from ..quantities.record import Record
@@ -48,6 +49,10 @@ class Damper(Record):
     GROUP: ClassVar[str] = "damperopt.dampers"
     VARIABLES: ClassVar[tuple[DesignVariable, ...]] = ()
     """Numbers of the damper that the optimiser may choose."""
+    ELASTIC: ClassVar[tuple[str, ...]] = ()
+    """Keys of the block ``compliance`` that this damper knows sizes for."""
+    SIZES: ClassVar[tuple[DesignVariable, ...]] = ()
+    """Sizes of elastic parts that may be chosen beside `VARIABLES`; which of them, `sizes` says."""
     STATES: ClassVar[tuple[State, ...]] = ()
     OUTPUTS: ClassVar[tuple[Output, ...]] = ()
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0,)
@@ -97,6 +102,28 @@ class Damper(Record):
     def series(self, design: Mapping[str, Expr]) -> Expr | None:
         """Stiffness in series with the damper [N/m]; None where there is none."""
         return None
+
+    def sizes(self) -> tuple[DesignVariable, ...]:
+        """Those of `SIZES` that this damper has."""
+        return ()
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """What gives way in the damper, from the sizes that it has.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        study : Study
+            Floats or symbols: mass model.
+        stroke : Expr
+            Of the shock strut [m].
+        """
+        return ()
+
+    def is_sized(self, part: str) -> bool:
+        """Whether the stiffness of a part of the chain comes from its section; the study's compliance says it."""
+        return False
 
     def damping(self, design: Mapping[str, Expr]) -> Expr | None:
         """Slope of the force over the rate at rest [N s/m]; None where no one number says it."""

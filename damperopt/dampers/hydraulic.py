@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, sqrt, symbol
 from ..expressions.corners import Corners
+from ..ports.linkage import Compliant
 from ..ports.sizing import Force, LimitEvent, Size, Sized
 from ..quantities.named import DesignVariable
 from ..quantities.record import Record, SeriesStiffness
 from ..quantities.units import Quantity
-from ..strength.cylinder import bore, cylinder_mass, rod_diameters, rod_length
+from ..strength.cylinder import (
+    bore,
+    cylinder_mass,
+    oil_stiffness,
+    piston_area,
+    rod_diameters,
+    rod_length,
+    rod_stiffness,
+)
 from .base import Context, Damper
 
 __all__ = ["Hydraulic", "Orifice"]
@@ -30,6 +40,12 @@ class Hydraulic(Damper):
     """Through-rod hydraulic damper, F = c_lambda v, with an orifice F = c_lambda v + c_2 v |v|."""
 
     VARIABLES: ClassVar = (DesignVariable("c_lambda", "N s/m", r"$c_\lambda$", "damping of the damper", example="1e4 N s/m"),)
+
+    AREA: ClassVar = DesignVariable("A_piston", "m^2", "$A_p$", "area of the piston", example="6e-4 m^2")
+    ROD: ClassVar = DesignVariable("rod_diameter", "m", "$d_{rod}$", "diameter of the rod", example="16 mm")
+    STROKE: ClassVar = DesignVariable("s_damper", "m", "$s_d$", "stroke of the damper to one side", example="10 mm")
+    ELASTIC: ClassVar = ("damper",)
+    SIZES: ClassVar = (AREA, ROD, STROKE)
 
     kind: Literal["hydraulic"] = "hydraulic"
     orifice: Orifice | None = None
@@ -72,15 +88,39 @@ class Hydraulic(Damper):
         """The key `series_stiffness`."""
         return self.series_stiffness
 
+    def sizes(self) -> tuple[DesignVariable, ...]:
+        """Piston, rod and stroke, where the stiffness of oil column and rod comes from them."""
+        return Hydraulic.SIZES if self.is_sized("damper") else ()
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """Oil column and rod."""
+        if not self.is_sized("damper"):
+            return ()
+        model, own = study.mass, design["s_damper"]
+        oil = oil_stiffness(design["A_piston"], own, model)
+        rod = rod_stiffness(design["rod_diameter"], 2 * own + model.dead_length, model)
+        return Compliant("damper", oil), Compliant("damper", rod)
+
     def parts(self, event: LimitEvent, model: Any) -> Sized:
-        """A cylinder with rod, caps and oil; its rod diameter meets two limits and is chosen by the optimiser."""
-        diameter = symbol("rod_diameter")
+        """A cylinder with rod, caps and oil; its sizes meet several limits and are chosen by the optimiser."""
+        if not self.is_sized("damper"):
+            return self._cylinder(event, model, symbol("rod_diameter"), piston_area(event, model))
+        area, stroke = event.design["A_piston"], event.design["s_damper"]
+        sized = self._cylinder(replace(event, stroke=stroke), model, event.design["rod_diameter"], area)
+        torque = ("loads", "requirements.limit_torque")
+        chosen = (
+            Size("A_piston", "m^2", area, {"piston_pressure": (piston_area(event, model), ("mass.working_pressure", *torque))}),
+            Size("s_damper", "m", stroke, {"damper_stroke": (event.stroke, torque)}),
+        )
+        return Sized(sized.masses, (*sized.sizes, *chosen), sized.length)
+
+    def _cylinder(self, event: LimitEvent, model: Any, diameter: Expr, area: Expr) -> Sized:
         rod = Size("rod_diameter", "m", diameter, rod_diameters(event, model), start=0.02, lower=1e-5, upper=10.0)
-        length = rod_length(event, model) + event.stroke + bore(event, model, diameter)
-        return Sized({"damper": cylinder_mass(event, model, diameter)}, (rod,), length)
+        length = rod_length(event, model) + event.stroke + bore(area, diameter)
+        return Sized({"damper": cylinder_mass(event, model, diameter, area)}, (rod,), length)
 
     def leaves_out(self) -> tuple[str, ...]:
-        """The oil column, where no stiffness is given."""
-        if self.series_stiffness is None:
-            return ("compliance of oil column, rod and brackets in series with the damper (damper.series_stiffness)",)
+        """The oil column, where it has no stiffness."""
+        if self.series_stiffness is None and not self.is_sized("damper"):
+            return ("compliance of oil column, rod and brackets in series with the damper (damper.compliance)",)
         return ()

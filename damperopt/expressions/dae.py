@@ -34,6 +34,8 @@ class DAE:
         (n,) and (m,) right-hand sides.
     rest : casadi.SX
         (m,) algebraic unknowns at x = 0; of design and data.
+    relaxed : casadi.SX
+        (n,) the states when those of the gear and its tyres are held as `x` says, for long; of x, design and data.
     outputs : mapping of str to SX
         Other quantities by name [SI].
     output_units : mapping of str to str
@@ -56,6 +58,7 @@ class DAE:
     ode: ca.SX
     alg: ca.SX
     rest: ca.SX
+    relaxed: ca.SX
     states: tuple[State, ...]
     design_names: tuple[str, ...]
     data_names: tuple[str, ...]

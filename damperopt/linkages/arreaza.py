@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-from ..expressions.calculus import Expr, sin
-from ..ports.linkage import Linkage, Member
+from ..expressions.calculus import Expr, sin, sqrt
+from ..ports.linkage import Compliant, Linkage, Member, Point
+from ..quantities.named import DesignVariable
 from .base import TorqueLinks, from_lengths, reach_and_height
+from .elastic import TAPERED_MASS, leg_length, tapered_stiffness, two_legs_stiffness
 from .spatial import closed_loop
 
 __all__ = ["Arreaza"]
@@ -18,9 +20,21 @@ class Arreaza(TorqueLinks):
 
     VARIABLES: ClassVar = (TorqueLinks.ARM, *TorqueLinks.LENGTHS, TorqueLinks.SIDE)
     SPRING: ClassVar = "I_arm"
+    A_SUPPORT: ClassVar = DesignVariable("A_support", "m^2", "$A_{sup}$", "area of each leg of the support", example="200 mm^2")
+    I_SUPPORT: ClassVar = DesignVariable(
+        "I_support", "m^4", "$I_{sup}$", "second moment of area at the root of the support", example="1e-6 m^4"
+    )
+    ELASTIC: ClassVar = ("link", "support")
+    SIZES: ClassVar = (*TorqueLinks.SIZES, A_SUPPORT, I_SUPPORT)
     MIRRORS: ClassVar = False  # in space the damper stands on one side; its stroke is odd to the fourth power of psi only
 
     topology: Literal["arreaza"]
+
+    def sizes(self) -> tuple[DesignVariable, ...]:
+        """Of the torque link and of the support."""
+        if not self.is_sized("support"):
+            return super().sizes()
+        return (*super().sizes(), self.A_SUPPORT if self.support.form == "a_frame" else self.I_SUPPORT)
 
     def planar(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> tuple[Linkage, tuple[Expr, Expr]]:
         """Arm along the reach, damper across it; thesis (3-40) .. (3-45)."""
@@ -46,34 +60,62 @@ class Arreaza(TorqueLinks):
             damper_lever=ell,
         )
 
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """The torque link, and the support along the damper."""
+        links = super().elastic(design, study, stroke)
+        if not self.is_sized("support"):
+            return links
+        E, L, b, (ell, _) = study.material.youngs_modulus, design["L"], design["b"], reach_and_height(design, stroke)
+        if self.support.form == "a_frame":
+            width = self.links.width(L)
+            legs = leg_length(L, b + width / 2), leg_length(L, b - width / 2)
+            stiffness = two_legs_stiffness(E, design["A_support"], legs, width)
+        elif self.support.root == "hinge_line":
+            stiffness = tapered_stiffness(E, design["I_support"], L)
+        else:  # the force along y has the lever ell; it bends an arm of length R
+            R = sqrt(ell**2 + b**2)
+            stiffness = tapered_stiffness(E, design["I_support"], R) * (R / ell) ** 2
+        return (*links, Compliant("support", stiffness))
+
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
-        """Link, arm, damper, and the support that stands out by b from the upper hinge line."""
+        """Link, arm, damper, and the support from the upper hinge line."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
-        apex, support = (ell, 0.0, 0.0), (ell, -b, 0.0)
-        return (
-            Member("lower torque link", "torque links", "link", (0.0, 0.0, -h), apex, "link_section", length=L),
-            Member(
-                "bending arm",
-                "bending arm",
-                "arm",
-                (0.0, 0.0, h),
-                apex,
-                "arm_section",
-                inertia=design["I_arm"],
-                load="spring_force",
-                length=L,
-                bending_length=L if self.geometry == "spatial" else ell,
-            ),
-            # weighed as a cantilever of length b, which is less than what reaches from the hinge line to the damper
-            Member(
-                "rigid support",
-                "support arm",
-                "support",
-                (0.0, -b, h),
-                support,
-                "support_section",
-                load="damper_force",
-                length=b,
-            ),
-            Member("damper", "", "damper", support, apex, load="damper_force"),
+        apex, held = (ell, 0.0, 0.0), (ell, -b, 0.0)
+        arm = Member(
+            "bending arm",
+            "bending arm",
+            "arm",
+            (0.0, 0.0, h),
+            apex,
+            "arm_section",
+            inertia=design["I_arm"],
+            load="spring_force",
+            length=L,
+            bending_length=L if self.geometry == "spatial" else ell,
         )
+        return (
+            *self.link_members("lower torque link", design, -h, apex),
+            arm,
+            *self._support(design, held, ell, h),
+            Member("damper", "", "damper", held, apex, load="damper_force"),
+        )
+
+    def _support(self, design: Mapping[str, Expr], end: Point, ell: Expr, h: Expr) -> tuple[Member, ...]:
+        L, b = design["L"], design["b"]
+        rest = {"part": "support", "kind": "support", "section": "support_section", "end": end, "load": "damper_force"}
+        if not self.is_sized("support"):
+            # weighed as a cantilever of length b, which is less than what reaches from the hinge line to the damper
+            return (Member("rigid support", start=(0.0, -b, h), length=b, **{**rest, "part": "support arm"}),)
+        if self.support.form == "cantilever":
+            on_strut = self.support.root == "strut"
+            length, lever = (sqrt(ell**2 + b**2), ell) if on_strut else (L, L)
+            start = (0.0, 0.0, 0.0) if on_strut else (0.0, -b, h)
+            root = {"inertia": design["I_support"], "taper": TAPERED_MASS, "variable": "I_support"}
+            return (Member("support", start=start, length=length, bending_length=lever, **root, **rest),)
+        width = self.links.width(L)
+        members = []
+        for name, foot in (("far", width / 2), ("near", -width / 2)):  # from the damper's end; the far one is the longer
+            leg = leg_length(L, b + foot)
+            more = {"area": design["A_support"], "share": leg / width, "length": leg, "variable": "A_support"}
+            members.append(Member(f"support, {name} leg", start=(0.0, foot, h), **more, **rest))
+        return tuple(members)

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from ..dampers.base import Damper
 from ..errors import ConfigError
 from ..expressions.calculus import Expr
+from ..ports.linkage import Compliant
 from ..quantities.kinds import home_of, kinds, tags_of, union_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
@@ -37,9 +38,38 @@ class Assembly:
     VARIABLES: ClassVar[tuple[DesignVariable, ...]]
     """Design variables of damper and layout, in the order of every table and file."""
 
-    def links(self, design: Mapping[str, Expr]) -> Expr | None:
-        """Stiffness of the torque links at the apex [N/m]; None: rigid."""
-        return getattr(self, "link_stiffness", None)
+    def variables(self) -> tuple[DesignVariable, ...]:
+        """Design variables with the sizes of the elastic parts, in the order of every table and file."""
+        parts: list[Any] = [self.KIND, self.LAYOUT]
+        return (*self.VARIABLES, *(size for part in parts for size in part.sizes(self)))
+
+    def is_sized(self, part: str) -> bool:
+        """Whether the stiffness of a part of the chain comes from its section."""
+        compliance = getattr(self, "compliance", None)
+        return compliance is not None and part not in self.given_compliance() and compliance.is_sized(part)
+
+    def elastic_parts(self) -> tuple[str, ...]:
+        """Keys of the block ``compliance`` that layout and damper know a section for."""
+        parts: list[Any] = [self.LAYOUT, self.KIND]
+        return tuple(key for part in parts for key in part.ELASTIC)
+
+    def has_sized_parts(self) -> bool:
+        """Whether any part of the chain is elastic by its section: parts are then sized as the elastic chain loads them."""
+        return any(map(self.is_sized, self.elastic_parts()))
+
+    def given_compliance(self) -> dict[str, Any]:
+        """Stiffnesses that the study gives as numbers, by the names of the parts."""
+        compliance = getattr(self, "compliance", None)
+        if compliance is None:
+            return {}
+        given = {part: value for part in type(compliance).model_fields if not isinstance(value := getattr(compliance, part), str)}
+        older = {"link": getattr(self, "link_stiffness", None), "damper": getattr(self, "series_stiffness", None)}
+        return given | {part: value for part, value in older.items() if value is not None}
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """Parts that give way, of the layout and of the damper."""
+        parts: list[Any] = [self.LAYOUT, self.KIND]
+        return tuple(part for kind in parts for part in kind.elastic(self, design, study, stroke))
 
     @property
     def play(self) -> Freeplay | None:

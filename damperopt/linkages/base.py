@@ -17,11 +17,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, cos, sin, slope, sqrt, symbol, value_at
-from ..ports.linkage import Linkage, Member, Position
+from ..ports.linkage import Compliant, Linkage, Member, Point, Position
 from ..ports.sizing import LimitEvent
 from ..quantities.named import DesignVariable
 from ..quantities.record import Record
 from ..strength.members import member_mass
+from .elastic import TAPERED_MASS, LinkForm, SupportForm, leg_length, tapered_stiffness, two_legs_stiffness
 
 __all__ = ["Layout", "TorqueLinks", "from_lengths", "reach_and_height", "straight"]
 
@@ -44,9 +45,13 @@ class Layout(Record):
     """Design variable that makes it stiff, for the axes of charts."""
     MIRRORS: ClassVar[bool] = True
     """Whether a mirrored motion is a motion too."""
+    ELASTIC: ClassVar[tuple[str, ...]] = ()
+    """Keys of the block ``compliance`` that this layout knows a section for."""
+    SIZES: ClassVar[tuple[DesignVariable, ...]] = ()
+    """Sizes of elastic parts that may be chosen beside `VARIABLES`; which of them, `sizes` says."""
 
     topology: str
-    geometry: Literal["published", "planar", "spatial"] = "planar"
+    geometry: Literal["published", "planar", "spatial"] = "spatial"
     """How lengths follow from the yaw angle: as printed in the thesis, from the top, or in space."""
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
@@ -75,6 +80,28 @@ class Layout(Record):
         """
         return ()
 
+    def sizes(self) -> tuple[DesignVariable, ...]:
+        """Those of `SIZES` that this layout has: of parts whose stiffness comes from their section."""
+        return ()
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """Parts that give way, beside spring or arm.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        study : Study
+            Floats or symbols: material, mass model.
+        stroke : Expr
+            Of the shock strut [m].
+        """
+        return ()
+
+    def is_sized(self, part: str) -> bool:
+        """Whether the stiffness of a part of the chain comes from its section; the study's compliance says it."""
+        return False
+
     def masses(self, design: Mapping[str, Expr], event: LimitEvent, study: Any) -> dict[str, Expr]:
         """Mass of the layout by part, without the damper [kg].
 
@@ -97,14 +124,62 @@ class Layout(Record):
 class TorqueLinks(Layout):
     """Layouts with two lugs at the strut, 2 L cos(gamma) apart, and an apex at L sin(gamma) from its axis."""
 
+    LINKS: ClassVar = 1
+    """Torque links between gear and spring."""
     LENGTHS: ClassVar = (
         DesignVariable("L", "m", "$L$", "length of a torque link", example="0.6 m"),
         DesignVariable(
             "gamma", "rad", r"$\gamma$", "angle of a torque link to the strut axis", False, below=1.5707963, example="31 deg"
         ),
     )
+    A_LINK: ClassVar = DesignVariable("A_link", "m^2", "$A_{link}$", "area of each leg of a torque link", example="250 mm^2")
+    I_LINK: ClassVar = DesignVariable(
+        "I_link", "m^4", "$I_{link}$", "second moment of area at the root of a torque link", example="1e-6 m^4"
+    )
+    ELASTIC: ClassVar = ("link",)
+    SIZES: ClassVar = (A_LINK, I_LINK)
     SIDE: ClassVar = DesignVariable("b", "m", "$b$", "side distance of arm or damper root from the axis", example="0.2 m")
     ARM: ClassVar = DesignVariable("I_arm", "m^4", "$I_{arm}$", "second moment of area of the arm", example="3.4e-6 m^4")
+
+    links: LinkForm = LinkForm()
+    """Form of the torque links."""
+    support: SupportForm = SupportForm()
+    """Form of what holds the outer end of the damper, in layouts that have such a part."""
+
+    def sizes(self) -> tuple[DesignVariable, ...]:
+        """Of the torque links."""
+        if not self.is_sized("link"):
+            return ()
+        return (self.A_LINK,) if self.links.form == "a_frame" else (self.I_LINK,)
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """Every torque link of the layout, laterally at the apex."""
+        if not self.is_sized("link"):
+            return ()
+        E, L = study.material.youngs_modulus, design["L"]
+        if self.links.form == "cantilever":
+            stiffness = tapered_stiffness(E, design["I_link"], L)
+        else:
+            width = self.links.width(L)
+            leg = leg_length(L, width / 2)
+            stiffness = two_legs_stiffness(E, design["A_link"], (leg, leg), width)
+        return tuple(Compliant("link", stiffness, in_front=True) for _ in range(self.LINKS))
+
+    def link_members(self, name: str, design: Mapping[str, Expr], hinge: Expr, apex: Point) -> tuple[Member, ...]:
+        """Members of the torque link from a hinge at this height [m] to the apex."""
+        L, part = design["L"], "torque links"
+        if not self.is_sized("link"):
+            return (Member(name, part, "link", (0.0, 0.0, hinge), apex, "link_section", length=L),)
+        if self.links.form == "cantilever":
+            root = {"inertia": design["I_link"], "taper": TAPERED_MASS, "variable": "I_link"}
+            return (Member(name, part, "link", (0.0, 0.0, hinge), apex, "link_section", length=L, **root),)
+        width = self.links.width(L)
+        leg = leg_length(L, width / 2)
+        more = {"area": design["A_link"], "share": leg / width, "length": leg, "variable": "A_link"}
+        feet = {"left": -width / 2, "right": width / 2}
+        return tuple(
+            Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more) for side, y in feet.items()
+        )
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
         """By the level of the geometry."""

@@ -27,6 +27,7 @@ class Boeing(TorqueLinks):
         *TorqueLinks.LENGTHS,
     )
     SPRING: ClassVar = "k_lambda"
+    LINKS: ClassVar = 2
 
     topology: Literal["boeing"]
 
@@ -48,11 +49,10 @@ class Boeing(TorqueLinks):
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
         """Two links and the damper between them."""
         ell, h = reach_and_height(design, stroke)
-        apex, L = (ell, 0.0, 0.0), design["L"]
-        links = {"part": "torque links", "kind": "link", "section": "link_section", "length": L}
+        apex = (ell, 0.0, 0.0)
         return (
-            Member("lower torque link", start=(0.0, 0.0, -h), end=apex, **links),
-            Member("upper torque link", start=(0.0, 0.0, h), end=apex, **links),
+            *self.link_members("lower torque link", design, -h, apex),
+            *self.link_members("upper torque link", design, h, apex),
             Member("damper at the apex", "", "damper", (ell, -GAP * ell, 0.0), (ell, GAP * ell, 0.0), load="damper_force"),
         )
 

@@ -8,6 +8,7 @@ from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..quantities.record import Length, Record, SeriesStiffness, Stiffness
 from ..quantities.units import Quantity
+from .elastic import Compliance
 
 __all__ = ["EndStop", "Freeplay", "Joints", "beyond_gap", "stop_force"]
 
@@ -37,8 +38,10 @@ class EndStop(Record):
 class Joints(Record):
     """Keys of a study's damper that belong to the joints of its linkage."""
 
+    compliance: Compliance = Compliance()
+    """What gives way between the gear and the damper; ``sized`` or ``rigid`` says it for every part."""
     link_stiffness: SeriesStiffness | None = None
-    """Of the torque links, laterally at the apex, in series with the linkage [N/m]."""
+    """Deprecated: compliance.link [N/m]."""
     freeplay: Freeplay | None = None
     """Play of the apex joint."""
     end_stop: EndStop | None = None
@@ -47,8 +50,6 @@ class Joints(Record):
     def leaves_out(self) -> tuple[str, ...]:
         """What these joints do not hold, and what of them only a simulation of large motion holds."""
         words = []
-        if self.link_stiffness is None:
-            words.append("flexibility of the torque links (damper.link_stiffness)")
         if self.freeplay is None:
             words.append("freeplay (damper.freeplay)")
         else:

@@ -6,15 +6,20 @@ q^2 + (z + h)^2 = L^2. The upper assembly turns on the fixed strut about the y a
 u^2 = x^2 + (z - h)^2 is measured from the hinge line, the bending arm is an inextensible cantilever from (0, y_root) to
 the apex: its tip moves by eps across and, by foreshortening, 3 eps^2/(5 l_arm) back along itself.
 
-The unknowns are (eps, q, z). Levers follow from the implicit function theorem on the three equations.
+At a given yaw angle the unknowns are (eps, q, z); levers follow from the implicit function theorem on the three equations. At
+a given eps all is explicit, tan(psi) = y/x with
+
+    z = (L^2 - y^2 - u^2)/(4 h),   x^2 = u^2 - (z - h)^2,
+
+and so eps is the coordinate of a linkage whose links are elastic.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..expressions.calculus import Expr, cos, implicit_slopes, is_symbol, partial, sin, sqrt, symbol, value_at
-from ..ports.linkage import Linkage, Point, Position
+from ..expressions.calculus import Expr, atan, cos, implicit_slopes, is_symbol, partial, sin, sqrt, symbol, value_at
+from ..ports.linkage import Linkage, Path, Point, Position
 from .base import reach_and_height
 
 __all__ = ["FORESHORTENING", "closed_loop"]
@@ -80,6 +85,15 @@ def closed_loop(
     def at(angle: Expr) -> Position:
         return Position(*(value_at(expression, psi, angle) for expression in expressions))
 
+    height = (L**2 - y_tip**2 - u_tip**2) / (4 * h)
+    tip = sqrt(u_tip**2 - (height - h) ** 2), y_tip, height
+    angle = atan(tip[1] / tip[0])
+    length = eps if damper_end is None else sqrt(sum(_square(a, b) for a, b in zip(tip, damper_end, strict=True)))
+    explicit = [angle, partial(angle, eps), eps, 1, length - rest_length, partial(length, eps)]
+
+    def path(deflection: Expr) -> Path:
+        return Path(*(value_at(expression, eps, deflection) for expression in explicit))
+
     return Linkage(
         stiffness=stiffness,
         at=at,
@@ -91,6 +105,8 @@ def closed_loop(
         unknowns=unknowns,
         rest=(0, ell, 0),
         closure=lambda angle: tuple(value_at(equation, psi, angle) for equation in closure),
+        path=path,
+        coordinate="apex_deflection",
     )
 
 

@@ -1,20 +1,19 @@
 """Torque of a damper on the gear: the linkage with everything that stands in series or in parallel with it.
 
-From the gear to the damper: the angle of the attachment (yaw psi), apex freeplay, torque links of stiffness k_t (at the apex,
-laterally; thesis (3-14)), the linkage at its own angle psi_l with spring or arm, end stop and damper, and in series with the
-damper the stiffness k_s of oil column, rod and brackets. Torques by virtual work.
+From the gear to the damper: the angle of the attachment (yaw psi), torque links of stiffness k_t with the torsion of the strut
+(at the apex, laterally; thesis (3-14)), apex freeplay, the linkage at its own angle psi_l with spring or arm, end stop and
+damper, and in series with the damper the stiffness k_s of oil column, rod and what holds it. Torques by virtual work.
 
-The nodes between are massless, so that each either follows from a first-order equation (psi_l where the damper is rigidly
-attached, the dashpot's own stroke where it is not) or is an algebraic unknown (psi_l with both compliances).
+The nodes between are massless: a chain adds one state, whether its compliance stands before the linkage, behind it or both.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from ..dampers.base import Context
-from ..expressions.calculus import Expr, symbol
+from ..expressions.calculus import Expr, partial, symbol, value_at
 from ..expressions.corners import Corners
 from ..ports.linkage import Linkage
 from ..ports.motion import Attachment, Torque
@@ -27,8 +26,15 @@ RATE_STEPS = 24
 """Of Newton's method for the rate of a damper without an inverse: the first-order guess lies far outside where the force grows
 with a high power p of the rate, and each step then takes 1/p off."""
 
-CHAIN_STATES = (State("dashpot_stroke", "m", "damper"), State("link_angle", "rad", "damper"))
-"""States that compliances add."""
+CHAIN_STATES = (
+    State("dashpot_stroke", "m", "damper"),
+    State("link_angle", "rad", "damper"),
+    State("apex_deflection", "m", "damper"),
+)
+"""States that compliances add: one of these."""
+
+ROOT_STEPS = 5
+"""Newton steps to where a held chain stands."""
 
 OUTPUTS = (
     Output("damper_stroke", "m", "from rest"),
@@ -90,59 +96,87 @@ class _Chain:
         self._newton_steps: int | None = None
 
     def torque(self) -> Torque:
-        """The four cases: with and without compliance of the links (k_t) and in series with the damper (k_s)."""
-        damper, link = self._damper, self._link
-        k_t, k_s = damper.links(self._design), damper.series(self._design)
-        psi, psi_t = self._attachment.angle, self._attachment.rate
-        driving, engaged = psi, 1
-        if k_t is not None:
-            driving = symbol("link_angle")
-        elif damper.play is not None:
-            driving, engaged = beyond_gap(damper.play, link.reach, self._corners, psi)
+        """With rigid links the linkage stands at the angle of the gear; behind elastic ones it moves by itself."""
+        return self._behind_rigid_links() if self._link.links is None else self._behind_elastic_links()
+
+    def _behind_rigid_links(self) -> Torque:
+        """The damper moves with the gear, or its dashpot d by itself: k_s (s - d) = F(d')."""
+        damper, link, k_s = self._damper, self._link, self._link.series
+        driving, engaged = self._attachment.angle, 1
+        if damper.play is not None:
+            driving, engaged = beyond_gap(damper.play, link.reach, self._corners, driving)
         position = link.at(driving)
         s, lever = position.stroke, position.damper_lever
         F_spring, F_stop = link.stiffness * position.deflection, stop_force(damper.stop, self._corners, s)
-        elastic = F_spring * position.spring_lever + F_stop * lever
-        chain: dict[str, tuple[Expr, Expr]] = {}  # state: symbol, rate
-        through = None if k_t is None else self._through_links(k_t, psi - driving)
-
-        if k_s is not None:
+        chain: dict[str, tuple[Expr, Expr, Expr]] = {}  # state: symbol, rate, value when at rest
+        if k_s is None:
+            dashpot, v = s, engaged * lever * self._attachment.rate
+            F_d = self._force(s, v).force
+        else:
             dashpot = symbol("dashpot_stroke")
             F_d = k_s * (s - dashpot)
             v = self._speed(dashpot, F_d)
-            chain["dashpot_stroke"] = dashpot, v
-            if k_t is not None:  # in units of an angle, as the unknown is
-                self._unknowns.append((driving, 0, (through - elastic - F_d * lever) / (k_t * link.reach**2)))
-        elif k_t is not None:
-            F_d = (through - elastic) / lever
-            v = self._speed(s, F_d)
-            chain["link_angle"] = driving, v / lever
-        else:
-            v = engaged * lever * psi_t
-            F_d = self._force(s, v).force
-        torque = -engaged * (elastic + F_d * lever) if through is None else -through
-
-        own = self._force(s if k_s is None else chain["dashpot_stroke"][0], v)
-        rates = {name: rate for name, (_, rate) in chain.items()} | dict(own.rates)
-        closure, unknowns = link.closure(driving), self._unknowns
+            chain["dashpot_stroke"] = dashpot, v, _explicit_stroke(link, driving)
+        torque = -engaged * (F_spring * position.spring_lever + (F_stop + F_d) * lever)
         shown = (s, v, F_d, position.deflection, F_spring, F_stop)
-        names = ROTARY_OUTPUTS if damper.ROTARY else OUTPUTS
+        return self._answer(torque, chain, dashpot, v, shown, (link.unknowns, link.rest, link.closure(driving)))
+
+    def _behind_elastic_links(self) -> Torque:
+        """The linkage stands where the links hold it: at its own coordinate u, without inertia.
+
+        Virtual work along u gives the force in the damper, F_d = (T psi_l' - F_spring eps' - F_stop s')/s' with ' = d/du, as a
+        function of psi and u; of a damper in series with k_s, F_d = k_s (s - d) and d' = v(F_d), the rate of u follows.
+        """
+        damper, link, k_s = self._damper, self._link, self._link.series
+        u = symbol(link.coordinate)
+        path = link.along(u)
+        s, s_u = path.stroke, path.stroke_slope
+        T, T_psi = self._through_links(path.angle)
+        F_spring, F_stop = link.stiffness * path.deflection, stop_force(damper.stop, self._corners, s)
+        F_d = (T * path.angle_slope - F_spring * path.deflection_slope) / s_u - F_stop
+        if k_s is None:
+            dashpot = s
+            v = self._speed(dashpot, F_d)
+            rate = v / s_u
+        else:
+            dashpot = s - F_d / k_s
+            v = self._speed(dashpot, F_d)
+            F_psi = T_psi * path.angle_slope / s_u
+            rate = (k_s * v + F_psi * self._attachment.rate) / (k_s * s_u - partial(F_d, u))
+        rest = _root(F_d, u)  # held for long, the damper carries nothing
+        shown = (s, v, F_d, path.deflection, F_spring, F_stop)
+        return self._answer(-T, {link.coordinate: (u, rate, rest)}, dashpot, v, shown)
+
+    def _answer(
+        self,
+        torque: Expr,
+        chain: Mapping[str, tuple[Expr, Expr, Expr]],
+        dashpot: Expr,
+        v: Expr,
+        shown: Sequence[Expr],
+        loop: tuple[Sequence[Expr], Sequence[Expr], Sequence[Expr]] = ((), (), ()),
+    ) -> Torque:
+        own, (loop_unknowns, loop_rest, closure), unknowns = self._force(dashpot, v), loop, self._unknowns
+        names = ROTARY_OUTPUTS if self._damper.ROTARY else OUTPUTS
         return Torque(
             torque,
-            {name: x for name, (x, _) in chain.items()} | self._own,
-            rates,
-            (*link.unknowns, *(unknown for unknown, _, _ in unknowns)),
-            (*link.rest, *(rest for _, rest, _ in unknowns)),
+            {name: x for name, (x, _, _) in chain.items()} | self._own,
+            {name: rate for name, (_, rate, _) in chain.items()} | dict(own.rates),
+            (*loop_unknowns, *(unknown for unknown, _, _ in unknowns)),
+            (*loop_rest, *(rest for _, rest, _ in unknowns)),
             (*closure, *(residual for _, _, residual in unknowns)),
             dict(zip((o.name for o in names), shown, strict=False)) | dict(own.outputs),
             self._newton_steps,
+            {name: rest for name, (_, _, rest) in chain.items()},
         )
 
-    def _through_links(self, k_t: Expr, twist: Expr) -> Expr:
-        """Torque through elastic links [N m]; the play stands in series with them."""
+    def _through_links(self, angle: Expr) -> tuple[Expr, Expr]:
+        """Torque through elastic links [N m] and its slope over psi; the play stands in series with them."""
+        link, twist, engaged = self._link, self._attachment.angle - angle, 1
         if self._damper.play is not None:
-            twist, _ = beyond_gap(self._damper.play, self._link.reach, self._corners, twist)
-        return k_t * self._link.reach**2 * twist
+            twist, engaged = beyond_gap(self._damper.play, link.reach, self._corners, twist)
+        K = link.links * link.reach**2
+        return K * twist, K * engaged
 
     def _force(self, stroke: Expr, rate: Expr) -> Any:
         return self._damper.force(self._design, self._own, stroke, rate, self._context, self._corners)
@@ -156,3 +190,19 @@ class _Chain:
             scale = 1.0 if damping is None else damping
             self._unknowns.append((rate, 0, (self._force(stroke, rate).force - force) / scale))
         return rate
+
+
+def _root(residual: Expr, u: Expr) -> Expr:
+    """Root near 0 of an expression in u, by Newton's method."""
+    found: Expr = 0.0
+    for _ in range(ROOT_STEPS):
+        found = found - value_at(residual / partial(residual, u), u, found)
+    return found
+
+
+def _explicit_stroke(link: Linkage, angle: Expr) -> Expr:
+    """Stroke of the damper at an angle, without unknowns."""
+    if link.path is None:
+        return link.at(angle).stroke
+    u = symbol("coordinate")
+    return value_at(link.path(u).stroke, u, _root(link.path(u).angle - angle, u))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Literal
+from dataclasses import replace
+from typing import Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, sin, sqrt
-from ..ports.linkage import Linkage, Member
+from ..ports.linkage import Compliant, Linkage, Member
+from ..strength.sections import area
 from .base import TorqueLinks, from_lengths, reach_and_height
 from .spatial import closed_loop
 
@@ -18,6 +20,7 @@ class Utas(TorqueLinks):
 
     VARIABLES: ClassVar = (TorqueLinks.ARM, *TorqueLinks.LENGTHS, TorqueLinks.SIDE)
     SPRING: ClassVar = "I_arm"
+    ELASTIC: ClassVar = ("link", "arm")
     MIRRORS: ClassVar = False
 
     topology: Literal["utas"]
@@ -37,7 +40,7 @@ class Utas(TorqueLinks):
             return -sqrt(ell**2 + b**2 - 2 * ell * b * sin(psi))
 
         printed = 2 * E * I_arm * ell * sin_alpha / R**2, c_lambda * ell**2 * b / (10 * R)
-        return from_lengths(3 * E * I_arm / R**3, arm_tip, damper, ell, R, R), printed
+        return from_lengths(3 * E * I_arm / R**3 / self._softer(b, R), arm_tip, damper, ell, R, R), printed
 
     def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:
         """Arm from (0, b, h), damper from (0, -b, h), both to the apex."""
@@ -45,7 +48,7 @@ class Utas(TorqueLinks):
         l_arm = sqrt(L**2 + b**2)
         return closed_loop(
             design,
-            3 * E * design["I_arm"] / l_arm**3,
+            3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm),
             stroke=stroke,
             y_root=b,
             arm_length=l_arm,
@@ -55,24 +58,40 @@ class Utas(TorqueLinks):
             damper_lever=2 * b * ell / l_arm,
         )
 
+    def _softer(self, b: Expr, l_arm: Expr) -> Expr:
+        """Deflection of the tip over that of an arm whose root does not turn: a hinge line of its section turns by M b/(E I)."""
+        return 1 + 3 * b / l_arm if self.is_sized("arm") else 1
+
+    def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
+        """Along the damper: the arm in tension, and the hinge line that its root bends by its share across it."""
+        links = super().elastic(design, study, stroke)
+        if not self.is_sized("arm"):
+            return links
+        E, I_arm, L, b = study.material.youngs_modulus, design["I_arm"], design["L"], design["b"]
+        l_arm = sqrt(L**2 + b**2)
+        arm = Compliant("arm", E * area(study.mass.arm_section, I_arm) / l_arm)
+        return (*links, arm, Compliant("arm", 3 * E * I_arm / b**3 * (l_arm / L) ** 2))
+
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
         """Link, arm and damper."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         apex, true_length = (ell, 0.0, 0.0), sqrt(L**2 + b**2)
         bends_over = true_length if self.geometry == "spatial" else sqrt(ell**2 + b**2)
-        return (
-            Member("lower torque link", "torque links", "link", (0.0, 0.0, -h), apex, "link_section", length=L),
-            Member(
-                "bending arm",
-                "bending arm",
-                "arm",
-                (0.0, b, h),
-                apex,
-                "arm_section",
-                inertia=design["I_arm"],
-                load="spring_force",
-                length=true_length,
-                bending_length=bends_over,
-            ),
-            Member("damper", "", "damper", (0.0, -b, h), apex, load="damper_force"),
+        arm = Member(
+            "bending arm",
+            "bending arm",
+            "arm",
+            (0.0, b, h),
+            apex,
+            "arm_section",
+            inertia=design["I_arm"],
+            load="spring_force",
+            length=true_length,
+            bending_length=bends_over,
         )
+        damper = Member("damper", "", "damper", (0.0, -b, h), apex, load="damper_force")
+        links = self.link_members("lower torque link", design, -h, apex)
+        if not self.is_sized("arm"):
+            return (*links, arm, damper)
+        beam = replace(arm, name="hinge line", part="hinge line", kind="hinge", start=(0.0, -b, h), end=(0.0, b, h), length=2 * b)
+        return (*links, arm, beam, damper)

@@ -87,6 +87,9 @@ class DecayAnalysis:
         self._data = np.array(data_values(study))
         self._design: tuple[float, ...] = ()
         self._known: dict[tuple[float, float, bool], DecayPoint] = {}
+        at = [self._dae.design, self._dae.speed, self._dae.load, self._dae.data]
+        slopes = ca.jacobian(self._dae.relaxed, self._dae.design) @ ca.diag(self._dae.design)
+        self._start = ca.Function("start", [self._dae.x, *at], [self._dae.relaxed, ca.densify(slopes)])
         self._outputs, self._output_slopes = output_functions(self._dae, PEAKS)
         slopes = ca.jacobian(ca.vertcat(self._dae.ode, self._dae.alg), self._dae.data)
         self._moving = ca.DM(slopes.sparsity(), 1).full().any(axis=0)
@@ -179,8 +182,9 @@ class DecayAnalysis:
         required, start = self.requirement, dict(zip(self._dae.data_names, data, strict=True))
         x0 = np.array([start.get(f"{self._disturbance}.{name}", 0.0) for name in self._dae.state_names])
         stretch = STRETCH_CYCLES * 2 * math.pi / fastest_rate(A)
-        still = np.zeros((x0.size, len(values) if gradient else 0, 1))
-        motion = TangentMotion(self._dae.state_names, np.zeros(1), x0[:, None], still)
+        x, slopes = (found.full() for found in self._start(x0, values, speed, load, data))
+        slopes = slopes if gradient else np.zeros((x0.size, 0))
+        motion = TangentMotion(self._dae.state_names, np.zeros(1), x, slopes[:, :, None])
         for stretches in range(1, MAX_STRETCHES + 1):
             x, S, t = motion.x[:, -1], motion.S[:, :, -1] if gradient else None, motion.time[-1]
             try:

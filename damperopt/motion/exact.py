@@ -118,7 +118,7 @@ class ExactSimulator:
         motion = [dae.ode, step, arguments, ca.SX(dae.outputs["torque_without_friction"])]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, dae.data)
-        self._expressions = motion, [rows], [ca.SX(dae.first_guess())]
+        self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
         self._take(study.start if design is None else design, complete=design is not None)
 
     def _take(self, design: Mapping[str, float], complete: bool = True) -> None:
@@ -128,7 +128,7 @@ class ExactSimulator:
             return  # calls will give one
         self.model.at(design)
         values = ca.DM([*(design[name] for name in self.model.design_names), *data_values(self.study)])
-        self.motion, self.rows, self.first_guess = (
+        self.motion, self.rows, self.first_guess, self.relaxed = (
             _Fast(self._inputs, [ca.substitute(e, self._known, values) for e in expressions])
             for expressions in self._expressions
         )
@@ -212,12 +212,13 @@ class _Run:
         self._wheel_rate = speed / model.study.gear.wheel_radius
         self._point, self._external = np.array([speed, load, 0.0]), 2
         self._yaw_rate = model.yaw_rate
-        self._x0 = np.array(disturbance.start(model.state_names))
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
         self._sticks = False
         z = np.zeros(model.unknowns)
+        given = np.array(disturbance.start(model.state_names))
+        self._x0 = model.relaxed(given, z, self._modes, self._point)[0].copy()
         self._z = model.first_guess(self._x0, z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps

@@ -131,6 +131,8 @@ class Simulator:
         self._state_names, self._units = dae.state_names, dae.units
         self._integrator = Integrator(dae, data_values(study), STEPS, self.engine, tolerance)
         self._outputs = Outputs(dae, study)
+        self._data = data_values(study)
+        self._start = ca.Function("start", [dae.x, dae.design, dae.speed, dae.load, dae.data], [dae.relaxed])
 
     def __call__(
         self,
@@ -149,7 +151,8 @@ class Simulator:
         stretches = math.ceil(output_points(gear, speed, load, duration) / STEPS)
         stretch, rate = duration / stretches, speed / self.study.gear.wheel_radius
         torque, unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
-        x = np.array(disturbance.start(self._state_names))[:, None]
+        given = disturbance.start(self._state_names)
+        x = self._start(given, values, speed, load, self._data).full()
         columns, times = [self._outputs(x, values, speed, load, torque)], [np.zeros(1)]
         refuse_start(columns[0], self._outputs.names, self.study)
         message, t, length = "", 0.0, stretch

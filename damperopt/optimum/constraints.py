@@ -15,7 +15,7 @@ from ..objectives import SizedLayout
 from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
 from ..strength.materials import allowable_stress
-from ..strength.members import root_stress
+from ..strength.members import allowables, root_stress
 
 __all__ = ["Constraint", "geometry", "strength"]
 
@@ -74,13 +74,14 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
     list of Constraint
     """
     required = study.requirements
-    blocks = [c for m in study.damper.members(design) if m.inertia is not None for c in _arm(study, m, sized.event)]
+    blocks = [c for m in study.damper.members(design) if m.kind == "arm" for c in _arm(study, m, sized.event)]
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
     least_stroke = required.stroke_ratio * required.apex_clearance
     relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
-    blocks.append(Constraint("working_stroke", sized.event.stroke, least_stroke, True, "m", relaxed, ratio=True))
+    stroke = sized.event.stroke if sized.event.service_stroke is None else sized.event.service_stroke
+    blocks.append(Constraint("working_stroke", stroke, least_stroke, True, "m", relaxed, ratio=True))
     return [replace(block, kind="strength") for block in blocks]
 
 
@@ -88,9 +89,16 @@ def _arm(study: Any, member: Member, event: LimitEvent) -> list[Constraint]:
     """Static and fatigue strength of a bending arm."""
     required, name = study.requirements, member.kind
     stress = root_stress(member, event, study)
-    allowed = allowable_stress(study.material, required.safety_factor)
     torque = ("requirements.limit_torque", "requirements.limit_torque_factor")
-    found = [Constraint(f"{name}_stress", stress, allowed, False, "Pa", ("requirements.safety_factor", *torque), ratio=True)]
+    found = []
+    if study.damper.has_sized_parts():
+        allowed_by = allowables(study.material, event)
+    else:  # the rigid chain of the thesis, with one factor
+        allowed_by = {"limit": allowable_stress(study.material, required.safety_factor)}
+    for check, allowed in allowed_by.items():
+        relaxed = ("requirements.safety_factor", *torque) if check == "limit" else torque
+        label = f"{name}_stress" if check == "limit" else f"{name}_{check}"
+        found.append(Constraint(label, stress, allowed, False, "Pa", relaxed, ratio=True))
     if study.material.has_fatigue_data:
         amplitude, cycles = required.fatigue.stress_fraction * stress, required.fatigue.cycles
         endured = study.material.fatigue_strength_coefficient * (2 * cycles) ** study.material.fatigue_exponent

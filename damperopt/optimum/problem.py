@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ..dynamics import build
+from ..linkages.elastic import elastic_linkage
 from ..motion.measure import PEAKS
 from ..objectives import sized_layout
 from ..quantities.named import DesignVariable
@@ -83,23 +84,24 @@ class DesignProblem:
         dae = build(symbols)
         design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
         load, factors = ca.SX.sym("load_limit"), ca.SX.sym("factors", len(PEAKS))
-        link = symbols.study.damper.linkage(design, symbols.study.material.youngs_modulus)
+        link = elastic_linkage(symbols.study, design)
         sized = sized_layout(symbols.study, design, link, load, [factors[i] for i in range(len(PEAKS))])
         parts = sized.masses
         self.constraints: tuple[Constraint, ...] = tuple(
             strength(symbols.study, design, sized) + geometry(symbols.study, design, link, sized)
         )
-        self.size_names = tuple(size.name for size in sized.sizes)
-        self.units = {v.name: v.unit for v in study.variables} | {size.name: size.unit for size in sized.sizes}
+        own_sizes = [size for size in sized.sizes if size.name not in design]
+        self.size_names = tuple(size.name for size in own_sizes)
+        self.units = {v.name: v.unit for v in study.variables} | {size.name: size.unit for size in own_sizes}
         self.part_names = tuple(parts)
         self.constraint_names = tuple(c.name for c in self.constraints)
-        own = ca.vertcat(ca.SX(0, 1), *(size.symbol for size in sized.sizes))
+        own = ca.vertcat(ca.SX(0, 1), *(size.symbol for size in own_sizes))
         inputs = [dae.design, own, symbols.data, load, factors]
         self._mass = ca.Function("mass", inputs, [ca.vertcat(*parts.values())])
         self._rows = ca.Function("rows", inputs, [ca.vertcat(*(c.row for c in self.constraints))])
         self._values = ca.Function("values", inputs, [ca.vertcat(*(ca.horzcat(c.value, c.limit) for c in self.constraints))])
         without_sizes = [*inputs[:1], *inputs[2:]]
-        least = [ca.mmax(ca.vertcat(*(value for value, _ in size.least.values()))) for size in sized.sizes]
+        least = [ca.mmax(ca.vertcat(*(value for value, _ in size.least.values()))) for size in own_sizes]
         self._least = ca.Function("least", without_sizes, [ca.vertcat(ca.SX(0, 1), *least)])
         self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
         damping = symbols.study.damper.damping({**design, **link.as_printed})
@@ -112,7 +114,7 @@ class DesignProblem:
         shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
         shifted += margin * ca.SX.eye(dae.x.numel())
         self.shifted_matrix = ca.Function("shifted", [dae.design, symbols.data, dae.speed, dae.load], [shifted])
-        own_variables = [ScaledVariable(size.name, size.start, size.lower, size.upper, True) for size in sized.sizes]
+        own_variables = [ScaledVariable(size.name, size.start, size.lower, size.upper, True) for size in own_sizes]
         self.variables = (*map(self._variable, self.study.variables), *own_variables)
 
     def _variable(self, declared: DesignVariable) -> ScaledVariable:

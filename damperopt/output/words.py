@@ -129,7 +129,7 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     study : Study
     result : DesignResult
     """
-    lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.damper.VARIABLES}
+    lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.variables}
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)

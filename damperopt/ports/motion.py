@@ -62,6 +62,8 @@ class Torque:
         By declared name [SI].
     newton_steps : int or None
         That the unknowns need from their first-order guess; None: as few as a closed linkage.
+    relaxed : mapping of str to Expr
+        Value of further states where the gear is held still for long, of its states; others rest at 0.
     """
 
     torque: Expr
@@ -72,3 +74,4 @@ class Torque:
     residuals: tuple[Expr, ...] = ()
     outputs: Mapping[str, Expr] = field(default_factory=dict)
     newton_steps: int | None = None
+    relaxed: Mapping[str, Expr] = field(default_factory=dict)

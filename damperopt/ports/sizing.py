@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -59,6 +60,12 @@ class LimitEvent:
         Energy that the spring stores [J].
     safety_factor : Expr
         On yield strength under these loads.
+    ultimate_factor : Expr
+        On rupture and buckling under these loads.
+    service_stroke : Expr
+        Damper stroke to one side under the torque of service [m]; None: the same as `stroke`.
+    design : mapping of str to Expr
+        Design variables by name [SI].
     """
 
     torque: Expr
@@ -71,6 +78,9 @@ class LimitEvent:
     spring_force: Expr
     spring_energy: Expr
     safety_factor: Expr = 1
+    ultimate_factor: Expr = 1.5
+    service_stroke: Expr = None
+    design: Mapping[str, Expr] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -85,16 +95,16 @@ class Size:
     least : mapping of str to (Expr, tuple of str)
         Least value by the name of the limit, and the key paths that would relax it.
     start, lower, upper : float
-        [unit]
+        [unit]; of a size that is no design variable.
     """
 
     name: str
     unit: str
     symbol: Expr
     least: Mapping[str, tuple[Expr, tuple[str, ...]]]
-    start: float
-    lower: float
-    upper: float
+    start: float = 1.0
+    lower: float = 0.0
+    upper: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -106,7 +116,7 @@ class Sized:
     masses : mapping of str to Expr
         Part -> mass [kg], fittings included.
     sizes : tuple of Size
-        Sizes to be chosen, that the masses hang on.
+        Sizes to be chosen, that the masses hang on: design variables by their name, or numbers of their own.
     length : Expr or None
         Pin-to-pin length that it needs [m].
     """

@@ -9,7 +9,15 @@ from ..expressions.calculus import Expr, sqrt
 from ..ports.sizing import LimitEvent
 from .materials import allowable_stress
 
-__all__ = ["bore", "cylinder_mass", "rod_diameters", "rod_length"]
+__all__ = [
+    "bore",
+    "cylinder_mass",
+    "oil_stiffness",
+    "piston_area",
+    "rod_diameters",
+    "rod_length",
+    "rod_stiffness",
+]
 
 
 def rod_length(event: LimitEvent, model: Any) -> Expr:
@@ -40,12 +48,36 @@ def rod_diameters(event: LimitEvent, model: Any) -> dict[str, tuple[Expr, tuple[
     }
 
 
-def bore(event: LimitEvent, model: Any, rod_diameter: Expr) -> Expr:
-    """Bore of the cylinder [m]: an annulus F_max/p_max around the rod."""
-    return sqrt(4 * event.damper_force / (math.pi * model.working_pressure) + rod_diameter**2)
+def piston_area(event: LimitEvent, model: Any) -> Expr:
+    """Least area of the piston [m^2], F_max/p_max."""
+    return event.damper_force / model.working_pressure
 
 
-def cylinder_mass(event: LimitEvent, model: Any, rod_diameter: Expr) -> Expr:
+def bore(area: Expr, rod_diameter: Expr) -> Expr:
+    """Bore of the cylinder [m]: the area of the piston as an annulus around the rod."""
+    return sqrt(4 * area / math.pi + rod_diameter**2)
+
+
+def oil_stiffness(area: Expr, stroke: Expr, model: Any) -> Expr:
+    """Stiffness of both chambers of a balanced damper at mid-stroke, 2 beta A/(stroke + dead) [N/m].
+
+    Parameters
+    ----------
+    area : Expr
+        Of the piston [m^2].
+    stroke : Expr
+        To one side [m].
+    model : MassModel
+    """
+    return 2 * model.bulk_modulus * area / (stroke + model.chamber_dead_length)
+
+
+def rod_stiffness(rod_diameter: Expr, length: Expr, model: Any) -> Expr:
+    """Stiffness of the rod along itself, E A/l [N/m]."""
+    return model.damper_material.youngs_modulus * math.pi / 4 * rod_diameter**2 / length
+
+
+def cylinder_mass(event: LimitEvent, model: Any, rod_diameter: Expr, area: Expr) -> Expr:
     """Mass of the damper with its oil [kg].
 
     Parameters
@@ -54,17 +86,19 @@ def cylinder_mass(event: LimitEvent, model: Any, rod_diameter: Expr) -> Expr:
     model : MassModel
     rod_diameter : Expr
         [m]
+    area : Expr
+        Of the piston [m^2].
     """
     # D bore, t wall of a thin cylinder p D/(2 sigma) plus an allowance for wear and threads, caps as clamped plates
     # plus the same
     steel = model.damper_material
     sigma = allowable_stress(steel, event.safety_factor)
     p, length = model.working_pressure, rod_length(event, model)
-    D = bore(event, model, rod_diameter)
+    D = bore(area, rod_diameter)
     t = model.wall_allowance + p * D / (2 * sigma)
     cap = model.wall_allowance + D / 2 * sqrt(0.75 * p / sigma)
     cylinder = math.pi * (D + t) * t * length
     rod = math.pi / 4 * rod_diameter**2 * length
     caps = 2 * math.pi / 4 * (D + 2 * t) ** 2 * cap
-    oil = model.oil_density * event.damper_force / p * length
+    oil = model.oil_density * area * length
     return steel.density * (cylinder + rod + caps) * (1 + model.damper_fittings_fraction) + oil

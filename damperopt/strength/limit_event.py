@@ -1,8 +1,9 @@
 """Loads of the limit event, which sizes the parts.
 
-The limit event is a yaw torque, not an imposed angle: T_lim gives the static yaw psi_lim = T_lim/k_psi and the peak
-rate psi_lim sqrt(k_psi/I_z). Or it is what simulated motions show: the same estimates, made from the yaw angle of a release or
-a kick, times factors from simulation.
+The limit event is a yaw torque, not an imposed angle: T_lim gives the static yaw, and let go it gives the peak of the damper
+force: of the elastic chain, see `release`, or of a rigid one c (T_lim/k_psi) sqrt(k_psi/I_z), which takes no damping into
+account. Or it is what simulated motions show: the same estimates, made from the yaw angle of a release or a kick, times factors
+from simulation.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ from typing import Any
 from ..expressions.calculus import Expr, absolute, sqrt
 from ..ports.linkage import Linkage
 from ..ports.sizing import LimitEvent
+from .release import peak_damper_torque
+
+SERVICE = 0.25
 
 __all__ = ["limit_event", "peaks_of"]
 
@@ -45,13 +49,19 @@ def limit_event(
         peaks = study.tyre.peaks(load, study.tyre.pressure)
         side_share = absolute(study.gear.lever()) * peaks.side_force
         torque = study.requirements.limit_torque_factor * (peaks.aligning_moment + side_share)
-    yaw = torque / linkage.torsional_stiffness
-    yaw_rate = yaw * sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)
+    k_psi, elastic = linkage.torsional_stiffness, study.damper.has_sized_parts()
+    yaw = torque / k_psi  # of the linkage, behind the links
+    yaw_rate = yaw * sqrt(k_psi / study.gear.yaw_inertia)
     spring_force = factors[4] * torque / linkage.spring_lever
-    force = study.damper.peak_force(design, linkage.damper_lever * yaw_rate)
+    damping = study.damper.damping({**design, **linkage.as_printed})
+    if elastic and damping is not None:
+        force = study.damper.peak_force(design, _released(torque, study, linkage, damping) / damping)
+    else:
+        force = study.damper.peak_force(design, linkage.damper_lever * yaw_rate)
+    twist = torque / (linkage.links * linkage.reach**2) if elastic and linkage.links is not None else 0
     return LimitEvent(
         torque=factors[0] * torque,
-        yaw=factors[1] * yaw,
+        yaw=factors[1] * (yaw + twist),
         yaw_rate=yaw_rate,
         stroke=factors[2] * linkage.damper_lever * yaw,
         damper_force=factors[3] * force,
@@ -60,7 +70,20 @@ def limit_event(
         spring_force=spring_force,
         spring_energy=factors[1] * factors[4] * torque * yaw / 2,
         safety_factor=study.requirements.safety_factor,
+        service_stroke=SERVICE * linkage.damper_lever * yaw if elastic else None,
+        design=design,
     )
+
+
+def _released(torque: Expr, study: Any, linkage: Linkage, damping: Expr) -> Expr:
+    """Force of a viscous damper after the release of the elastic chain [N]."""
+    lever = linkage.damper_lever
+    front = None if linkage.links is None else linkage.links * linkage.reach**2
+    series = None if linkage.series is None else linkage.series * lever**2
+    k, c = linkage.torsional_stiffness, damping * lever**2
+    if front is None and series is None:
+        return damping * lever * torque / sqrt(k * study.gear.yaw_inertia)
+    return peak_damper_torque(torque, study.gear.yaw_inertia, front, k, c, series) / lever
 
 
 def peaks_of(event: LimitEvent) -> tuple[Expr, ...]:

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from ..expressions.calculus import Expr, is_symbol, sqrt
 from ..ports.linkage import Member, Point
 from ..ports.sizing import LimitEvent
 from .materials import allowable_stress
-from .sections import area, area_for_modulus, section_modulus
+from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
 
-__all__ = ["belleville_mass", "distance", "member_mass", "root_stress", "root_stress_of_force"]
+__all__ = [
+    "allowables",
+    "belleville_mass",
+    "distance",
+    "least_sections",
+    "member_mass",
+    "root_stress",
+    "root_stress_of_force",
+]
 
 
 def distance(start: Point, end: Point) -> Expr:
@@ -32,11 +41,52 @@ def member_mass(member: Member, event: LimitEvent, study: Any) -> Expr:
     model, rho = study.mass, study.material.density
     section, with_fittings = getattr(model, member.section), 1 + model.link_fittings_fraction
     length = distance(member.start, member.end) if member.length is None else member.length
+    if member.area is not None:
+        return rho * length * member.area * with_fittings
     if member.inertia is not None:
-        return rho * length * area(section, member.inertia) * with_fittings
+        return member.taper * rho * length * area(section, member.inertia) * with_fittings
     moment = getattr(event, member.load) * length
     allowable = allowable_stress(study.material, study.requirements.safety_factor)
     return model.cantilever_taper * rho * length * area_for_modulus(section, moment / allowable) * with_fittings
+
+
+def allowables(material: Any, event: LimitEvent) -> dict[str, Expr]:
+    """Stress at the limit load that each check allows [Pa]: yield at limit, rupture (of a laminate the strain) at ultimate."""
+    found = {}
+    if material.yield_strength is not None:
+        found["limit"] = material.yield_strength / event.safety_factor
+    if material.ultimate_strength is not None:
+        found["ultimate"] = material.ultimate_strength / event.ultimate_factor
+    if material.design_strain is not None:
+        found["ultimate"] = material.youngs_modulus * material.design_strain / event.ultimate_factor
+    return found
+
+
+def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, Expr]:
+    """Least area of a leg [m^2], or second moment at the root of a cantilever [m^4], by what asks for it.
+
+    Parameters
+    ----------
+    member : Member
+        With an area or a second moment of area.
+    event : LimitEvent
+    study : Study
+
+    Returns
+    -------
+    dict of str to Expr
+        ``limit``, ``ultimate``, and for a leg ``buckling``: Euler's load of pinned ends at ultimate.
+    """
+    section, load = getattr(study.mass, member.section), getattr(event, member.load)
+    allowed = allowables(study.material, event)
+    if member.area is None:
+        lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
+        return {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+    force, length = load * member.share, distance(member.start, member.end) if member.length is None else member.length
+    kappa_area, _ = shape_numbers(section)
+    least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
+    euler = event.ultimate_factor * force / (math.pi**2 * study.material.youngs_modulus)
+    return least | {"buckling": kappa_area * length * sqrt(euler)}
 
 
 def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:

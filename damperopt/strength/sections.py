@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-__all__ = ["area", "area_for_modulus", "fibre_distance", "section_modulus", "shape_numbers"]
+__all__ = ["area", "area_for_modulus", "fibre_distance", "inertia_for_modulus", "section_modulus", "shape_numbers"]
 
 
 def shape_numbers(section: Any) -> tuple[Any, Any]:
@@ -68,5 +68,9 @@ def section_modulus(section: Any, inertia: Any) -> Any:
 
 def area_for_modulus(section: Any, modulus: Any) -> Any:
     """Area [m^2] of the member with elastic section modulus `modulus` [m^3]."""
-    kappa_area, kappa_fibre = shape_numbers(section)
-    return kappa_area * (modulus * kappa_fibre) ** (2 / 3)
+    return shape_numbers(section)[0] * inertia_for_modulus(section, modulus) ** 0.5
+
+
+def inertia_for_modulus(section: Any, modulus: Any) -> Any:
+    """Second moment of area [m^4] of the member with elastic section modulus `modulus` [m^3]."""
+    return (modulus * shape_numbers(section)[1]) ** (4 / 3)

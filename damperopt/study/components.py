@@ -111,7 +111,7 @@ def design_variables() -> dict[str, DesignVariable]:
     found: dict[str, DesignVariable] = {}
     kinds_with: list[Any] = [*dampers().values(), *layouts().values()]
     for kind in kinds_with:
-        for variable in kind.VARIABLES:
+        for variable in (*kind.VARIABLES, *kind.SIZES):
             other = found.setdefault(variable.name, variable)
             if other.unit != variable.unit:
                 units = f"in {variable.unit}, elsewhere in {other.unit}"

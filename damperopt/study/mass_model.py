@@ -35,6 +35,10 @@ class MassModel(Record):
     """Peak damper pressure at the limit event [Pa] (3000 psi)."""
     dead_length: Length = 0.12
     """Damper length that is not stroke: eyes, glands, piston [m]."""
+    bulk_modulus: Stress = 1.0e9
+    """Effective, of the oil with its air and hoses [Pa]."""
+    chamber_dead_length: Length = 0.02
+    """Length of each chamber that the piston does not sweep [m]."""
     wall_allowance: Distance = 2e-3
     """Added to the wall and caps that pressure needs [m]."""
     least_rod_diameter: Length = 0.012

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .study import Study
 
 __all__ = ["covers", "leaves_out"]
@@ -19,10 +21,8 @@ def covers(study: Study) -> list[str]:
     list of str
         Sentences.
     """
-    damper, start = study.damper, study.start
-    links = "rigid torque links" if damper.links(start) is None else "torque links as stiff as the study says"
-    series = "a damper without compliance" if damper.series(start) is None else "the damper's compliance in series"
-    linkage = "" if damper.ROTARY else f", {links}, {series}"
+    damper = study.damper
+    linkage = "" if damper.ROTARY else f", {_chain(damper)}"
     found = [
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}."
@@ -38,6 +38,17 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _chain(damper: Any) -> str:
+    """What of the chain gives way, and what is taken as rigid."""
+    given, parts = damper.given_compliance(), damper.elastic_parts()
+    words = {"link": "torque links", "arm": "bending arm along itself", "support": "support", "damper": "oil column and rod"}
+    sized = [words[part] for part in parts if damper.is_sized(part)]
+    rigid = [words[part] for part in words if part not in given and not damper.is_sized(part) and part in ("link", "damper", *parts)]
+    found = [f"elastic by their sections: {', '.join(sized)}"] if sized else []
+    found += [f"as stiff as the study says: {', '.join(words.get(p, p) for p in given)}"] if given else []
+    return "; ".join(found + ([f"rigid: {', '.join(rigid)}"] if rigid else []))
 
 
 def leaves_out(study: Study) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ in a notebook they can be made directly or changed with `Study.replace`.
 
 from __future__ import annotations
 
+from functools import cached_property
 from html import escape
 from typing import Any, Self
 
@@ -18,6 +19,7 @@ from ..quantities.named import DesignVariable
 from ..quantities.record import Name, Record, quantity_of, refuse
 from ..reading import printable
 from ..strength.materials import Material
+from .asked import variables_left_out
 from .changes import changed
 from .components import DAMPER, GEAR, TYRE
 from .envelope import Envelope
@@ -61,7 +63,7 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
-        topology, names = self.damper.topology, self.variable_names
+        topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
             allowed = f"topology '{topology}' needs design variables {', '.join(names)}"
@@ -84,7 +86,7 @@ class Study(Record):
     @property
     def variables(self) -> tuple[DesignVariable, ...]:
         """Design variables of damper and layout, in the order of every table and file."""
-        variables: tuple[DesignVariable, ...] = self.damper.VARIABLES
+        variables: tuple[DesignVariable, ...] = self.damper.variables()
         return variables
 
     @property
@@ -101,8 +103,14 @@ class Study(Record):
 
     def variable(self, name: str) -> Variable:
         """The design variable `name`, which the layout must have."""
-        variable: Variable = getattr(self.design, name)
-        return variable
+        return self._bounded[name]
+
+    @cached_property
+    def _bounded(self) -> dict[str, Variable]:
+        """Every design variable; sizes that the study leaves out lie around what strength asks."""
+        given = {name: getattr(self.design, name) for name in self.variable_names}
+        given = {name: variable for name, variable in given.items() if variable is not None}
+        return given | variables_left_out(self, {name: variable.start for name, variable in given.items()})
 
     @property
     def start(self) -> dict[str, float]:

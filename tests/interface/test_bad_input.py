@@ -10,7 +10,7 @@ NAME, RADIUS, PLANAR = "name: main gear", "wheel_radius: 0.362 m", "geometry: pl
 MARGIN, RELEASE = "stability_margin: 0.1 1/s", "release: {yaw_angle: 0.25 deg}"
 ROTATIONAL = "topology: rotational\n  torsional_stiffness: 1\n  torsional_damping: 1\n  "
 
-# what to change in main_gear.yaml, where it is reported, and what the message must say
+# what to change in thesis_gear.yaml, where it is reported, and what the message must say
 BROKEN = {
     "unknown key": ("caster_length:", "caster_lenght:", "gear.caster_lenght", "did you mean 'caster_length'"),
     "missing key": ("  yaw_inertia: 100 kg m^2", "  #", "gear.yaw_inertia", "missing key; allowed: a number in kg m^2"),
@@ -99,7 +99,7 @@ BROKEN = {
 @pytest.mark.parametrize("case", BROKEN)
 def test_message_names_file_line_key_and_what_is_allowed(case, configs):
     old, new, key, says = BROKEN[case]
-    text = (configs / "main_gear.yaml").read_text()
+    text = (configs / "thesis_gear.yaml").read_text()
     assert text.count(old) >= 1, "the test looks for text that is no longer in the config"
     with pytest.raises(damperopt.ConfigError) as error:
         damperopt.loads(text.replace(old, new, 1), "study.yaml")
@@ -112,7 +112,7 @@ def test_message_names_file_line_key_and_what_is_allowed(case, configs):
 
 def test_simulated_limit_event_needs_motions_to_simulate(configs):
     """Without the block decay there is nothing to take the peaks from; the message says so under its key."""
-    text = (configs / "main_gear.yaml").read_text()
+    text = (configs / "thesis_gear.yaml").read_text()
     start, end = text.index("  decay:"), text.index("  lug_distance:")
     with pytest.raises(
         damperopt.ConfigError, match=r"study\.yaml:\d+: requirements\.decay: missing key; allowed: the block decay"
@@ -121,14 +121,14 @@ def test_simulated_limit_event_needs_motions_to_simulate(configs):
 
 
 def test_line_is_that_of_the_key(configs):
-    text = (configs / "main_gear.yaml").read_text().replace("0.3 m ", "0.3 kg ", 1)
+    text = (configs / "thesis_gear.yaml").read_text().replace("0.3 m ", "0.3 kg ", 1)
     line = next(i for i, row in enumerate(text.splitlines(), 1) if "0.3 kg" in row)
     with pytest.raises(damperopt.ConfigError, match=f"study.yaml:{line}: "):
         damperopt.loads(text, "study.yaml")
 
 
 def test_all_problems_are_reported_at_once(configs):
-    text = (configs / "main_gear.yaml").read_text()
+    text = (configs / "thesis_gear.yaml").read_text()
     text = text.replace("0.3 m ", "0.3 kg ", 1).replace("caster_length:", "caster:", 1)
     with pytest.raises(damperopt.ConfigError) as error:
         damperopt.loads(text)
@@ -142,7 +142,7 @@ def test_files_that_are_no_study_are_refused(text):
 
 
 def test_numbers_may_be_written_as_engineers_do(configs, main_gear):
-    text = (configs / "main_gear.yaml").read_text().replace("max: 1e7 N s/m", "max: 1e7").replace("150 kN", "1.5E+5", 1)
+    text = (configs / "thesis_gear.yaml").read_text().replace("max: 1e7 N s/m", "max: 1e7").replace("150 kN", "1.5E+5", 1)
     study = damperopt.loads(text)
     assert study.design.c_lambda.max == 1e7
     assert study.envelope.loads == main_gear.envelope.loads

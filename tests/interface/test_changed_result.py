@@ -13,7 +13,7 @@ from damperopt.output.gallery import figures_of
 
 @pytest.fixture(scope="module")
 def written(request):
-    study = damperopt.load(request.config.rootpath / "configs" / "main_gear.yaml")
+    study = damperopt.load(request.config.rootpath / "configs" / "thesis_gear.yaml")
     study = study.replace(damper__topology="boeing", solver__starts=1, requirements__decay=None)
     return json.loads(damperopt.optimise(study).to_json())
 

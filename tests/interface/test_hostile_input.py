@@ -70,7 +70,7 @@ def problems_of(text):
 
 @pytest.fixture(scope="module")
 def gear(configs):
-    return (configs / "main_gear.yaml").read_text()
+    return (configs / "thesis_gear.yaml").read_text()
 
 
 @pytest.mark.parametrize("case", NO_LENGTHS)

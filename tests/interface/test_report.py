@@ -27,7 +27,7 @@ pytestmark = pytest.mark.xdist_group("report")  # one optimisation and one page 
 
 @pytest.fixture(scope="module")
 def solved(request):
-    study = damperopt.load(request.config.rootpath / "configs" / "main_gear.yaml").replace(solver__starts=4)
+    study = damperopt.load(request.config.rootpath / "configs" / "thesis_gear.yaml").replace(solver__starts=4)
     return study, damperopt.optimise(study)
 
 

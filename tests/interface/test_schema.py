@@ -115,7 +115,7 @@ def test_starter_is_a_usual_gear(capsys):
 
 
 def test_validate_knows_a_sweep_and_says_what_is_not_usual(configs, capsys):
-    app(["validate", str(configs / "sweeps" / "margin.yaml"), str(configs / "main_gear.yaml")], standalone_mode=False)
+    app(["validate", str(configs / "sweeps" / "margin.yaml"), str(configs / "thesis_gear.yaml")], standalone_mode=False)
     shown = capsys.readouterr()
     assert "valid (sweep mass against margin, 15 points to optimise)" in shown.out
     assert "usual: 1 to 30" in shown.err

@@ -54,7 +54,7 @@ def study_file(configs, tmp_path):
     """Writes the main gear to study.yaml with text replaced."""
 
     def write(*changes):
-        text = (configs / "main_gear.yaml").read_text()
+        text = (configs / "thesis_gear.yaml").read_text()
         for old, new in changes:
             assert old in text, "the test looks for text that is no longer in the config"
             text = text.replace(old, new, 1)
@@ -90,7 +90,7 @@ def twin_motion(study, found, times=None, events=None):
 def release(configs, tmp_path_factory):
     """The command as documented, in a process of its own with the default engine."""
     place = tmp_path_factory.mktemp("release")
-    command = [*PROCESS, "simulate", str(configs / "main_gear.yaml"), *QUESTION, "-o", "out"]
+    command = [*PROCESS, "simulate", str(configs / "thesis_gear.yaml"), *QUESTION, "-o", "out"]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     found = read(place / "out")
@@ -200,7 +200,7 @@ def test_json_holds_question_answer_and_peaks(release, main_gear):
 @pytest.mark.parametrize("engine", ["cvodes", "idas", "exact"])
 def test_engines_agree(engine, call, configs, tmp_path, release):
     """Every engine is named in the JSON and gives the peaks, the decay and the kind of the default one."""
-    done = call("simulate", configs / "main_gear.yaml", *QUESTION, "--engine", engine, "-o", "out")
+    done = call("simulate", configs / "thesis_gear.yaml", *QUESTION, "--engine", engine, "-o", "out")
     assert done.code == 0, done.err
     found = read(tmp_path / "out").motion
     assert found["engine"] == engine
@@ -230,7 +230,7 @@ def test_engines_agree(engine, call, configs, tmp_path, release):
 )
 def test_disturbances_start_the_motion_they_name(options, block, first, call, configs, tmp_path):
     """Kick, step of torque, unbalance, two at once: the JSON repeats them, row one has them, and the gear moves."""
-    done = call("simulate", configs / "main_gear.yaml", "--speed", "40", "--duration", "0.2", *options, "-o", "out")
+    done = call("simulate", configs / "thesis_gear.yaml", "--speed", "40", "--duration", "0.2", *options, "-o", "out")
     assert done.code == 0, done.err
     found = read(tmp_path / "out")
     assert found.motion["disturbance"] == block
@@ -244,7 +244,7 @@ def test_disturbances_start_the_motion_they_name(options, block, first, call, co
 def test_load_speed_and_duration_take_units(call, configs, tmp_path):
     """120 kN, 100 kt and 200 ms are what they say, in the JSON and on the screen."""
     units = ("--load", "120kN", "--speed", "100 kt", "--duration", "200 ms")
-    done = call("simulate", configs / "main_gear.yaml", *units, "-o", "out")
+    done = call("simulate", configs / "thesis_gear.yaml", *units, "-o", "out")
     assert done.code == 0, done.err
     motion = read(tmp_path / "out").motion
     assert motion["load"] == 120e3
@@ -284,7 +284,7 @@ def test_design_of_a_result_is_simulated(name, call, configs, tmp_path, optimum)
 
 def test_design_brings_its_layout(call, configs, tmp_path, optimum):
     """A Boeing design on a study of another layout is simulated as Boeing: k_lambda, not I_arm."""
-    done = call("simulate", configs / "main_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
+    done = call("simulate", configs / "thesis_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
     assert done.code == 0, done.err
     found = read(tmp_path / "out")
     assert found.motion["design"] == optimum.result.design
@@ -376,7 +376,7 @@ def test_refused_questions_end_with_code_2_and_one_message(case, call, configs, 
     other = json.loads(optimum.result.to_json()) | {"topology": "arreaza"}
     (tmp_path / "other.json").write_text(json.dumps(other))
     before = {path.name for path in tmp_path.rglob("*")}
-    done = call("simulate", configs / "main_gear.yaml", "--speed", "40", "-o", "out", *options)
+    done = call("simulate", configs / "thesis_gear.yaml", "--speed", "40", "-o", "out", *options)
     assert done.code == 2, done.out
     assert says in done.err
     assert len(done.err.strip().splitlines()) == 1
@@ -396,7 +396,7 @@ def test_a_gear_without_bending_cannot_be_released_in_bending(call, configs, tmp
 def test_interrupt_leaves_nothing_half_written(configs, tmp_path):
     """Ctrl-C in a run of minutes: exit code 130, no traceback, no file."""
     question = ("--speed", "40", "--duration", "800", "--engine", "exact", "-o", "runs/out")
-    command = [*PROCESS, "simulate", str(configs / "main_gear.yaml"), *question]
+    command = [*PROCESS, "simulate", str(configs / "thesis_gear.yaml"), *question]
     process = subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )

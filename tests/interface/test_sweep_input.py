@@ -42,7 +42,7 @@ BAD = {
 def test_bad_sweeps_are_refused_with_file_line_and_key(configs, tmp_path, case):
     text, words = BAD[case]
     path = tmp_path / "bad.yaml"
-    path.write_text(f"base: {configs / 'main_gear.yaml'}\n{text}\n")
+    path.write_text(f"base: {configs / 'thesis_gear.yaml'}\n{text}\n")
     with pytest.raises(ConfigError) as refused:
         load_sweep(path)
     assert words in str(refused.value)

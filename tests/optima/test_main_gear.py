@@ -49,7 +49,7 @@ def test_answer_does_not_depend_on_seed_or_workers(topology, main_gear, optimum)
 
 @pytest.mark.parametrize("topology", FROZEN)
 def test_no_design_variable_rests_on_a_bound(topology, optimum, main_gear):
-    """The bounds of main_gear.yaml only frame the search; what stops a design is a requirement with a reason."""
+    """The bounds of thesis_gear.yaml only frame the search; what stops a design is a requirement with a reason."""
     for name, value in optimum(topology).design.items():
         variable = main_gear.variable(name)
         assert variable.min * 1.01 < value < variable.max * 0.99

@@ -1,0 +1,184 @@
+"""Stiffness of the parts between the gear and the damper, from the sections that they have.
+
+In series: the strut in torsion, the lower torque link, in Boeing's layout the upper one; then spring or bending arm with the
+damper beside it, and in series with the damper what holds it. A node between massless parts carries no inertia, so that the
+chain has one state of its own, the dashpot's stroke.
+
+Two legs of length l1, l2 from a hinge of width w carry a force across the apex by tension and compression N_i = F l_i/w, hence
+
+    1/k = (l1^3 + l2^3)/(E A w^2).
+
+A cantilever of uniform stress in similar sections has the tip stiffness (5/3) E I_root/L^3 and weighs 3/5 of a prismatic one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Literal, Self
+
+from pydantic import Discriminator, Tag, model_validator
+from typing_extensions import Annotated
+
+from ..expressions.calculus import Expr, sqrt
+from ..ports.linkage import Compliant, Linkage
+from ..quantities.record import Length, Record, SeriesStiffness, TorsionalStiffness, refuse
+
+__all__ = [
+    "TAPERED_MASS",
+    "Compliance",
+    "LinkForm",
+    "SupportForm",
+    "elastic_linkage",
+    "in_series",
+    "leg_length",
+    "tapered_stiffness",
+    "two_legs_stiffness",
+]
+
+TAPERED_MASS = 3 / 5
+"""Mass of a cantilever of uniform stress in similar sections over that of the prismatic one with its root section."""
+
+
+def _word_or_number(found: Any) -> str:
+    return "<word>" if isinstance(found, str) and found.strip().isalpha() else "<number>"
+
+
+_Part = Annotated[
+    Annotated[SeriesStiffness, Tag("<number>")] | Annotated[Literal["sized", "rigid"], Tag("<word>")],
+    Discriminator(_word_or_number),
+]
+_Torsion = Annotated[
+    Annotated[TorsionalStiffness, Tag("<number>")] | Annotated[Literal["rigid"], Tag("<word>")], Discriminator(_word_or_number)
+]
+
+
+class Compliance(Record):
+    """What gives way between the gear and the damper: from the section that a part has, a number, or nothing.
+
+    A part of given stiffness, and a rigid one, is sized by its strength alone, as a cantilever of uniform stress.
+    """
+
+    torsion: _Torsion = "rigid"
+    """Of piston and cylinder in torsion, in front of the linkage [N m/rad]; a word says that no number is known."""
+    link: _Part = "sized"
+    """Of the torque links together, laterally at the apex [N/m]."""
+    arm: _Part = "sized"
+    """Of the bending arm along itself, and of the hinge line that its root hangs on, in series with the damper [N/m]."""
+    support: _Part = "sized"
+    """Of what holds the damper, along the damper [N/m]."""
+    damper: _Part = "sized"
+    """Of oil column and rod [N/m]."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_word(cls, data: Any) -> Any:
+        if data in ("sized", "rigid"):
+            return dict.fromkeys(("link", "arm", "support", "damper"), data)
+        return data
+
+    def is_sized(self, part: str) -> bool:
+        """Whether the stiffness of a part comes from its section."""
+        return bool(getattr(self, part) == "sized")
+
+
+class LinkForm(Record):
+    """Form of the torque links."""
+
+    form: Literal["a_frame", "cantilever"] = "a_frame"
+    """Two legs from a hinge to the apex, or one tapered link that bends."""
+    hinge_width: Length | None = None
+    """Between the legs at the hinge [m]; left out: half the length of the link, the width of links that stand at 14 deg."""
+    hinge_width_max: Length | None = None
+    """Most that the strut has room for [m]."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        width, most = self.hinge_width, self.hinge_width_max
+        if width is not None and most is not None and isinstance(most, float) and width > most:
+            raise refuse("hinge_width", f"{width:g} m is more than hinge_width_max", f"at most {most:g} m")
+        return self
+
+    def width(self, L: Expr) -> Expr:
+        """w_h of a link of length L [m]."""
+        return L / 2 if self.hinge_width is None else self.hinge_width
+
+
+class SupportForm(Record):
+    """Form of what holds the outer end of the damper."""
+
+    form: Literal["a_frame", "cantilever"] = "a_frame"
+    """Two legs from the upper hinge line, or one tapered arm that bends."""
+    root: Literal["hinge_line", "strut"] = "hinge_line"
+    """Of a cantilever: beside the arm on the upper hinge line, or on the strut at the height of the apex."""
+
+
+def leg_length(L: Expr, across: Expr) -> Expr:
+    """Length of a leg whose foot stands `across` [m] beside the foot of the perpendicular of length L [m]."""
+    return sqrt(L**2 + across**2)
+
+
+def two_legs_stiffness(E: Expr, area: Expr, legs: tuple[Expr, Expr], width: Expr) -> Expr:
+    """Stiffness across the apex of two legs [N/m].
+
+    Parameters
+    ----------
+    E, area : Expr
+        Young's modulus [Pa], area of each leg [m^2].
+    legs : tuple of Expr
+        Their lengths [m].
+    width : Expr
+        Between their feet [m].
+
+    Examples
+    --------
+    >>> l = leg_length(0.4781, 0.125)
+    >>> round(two_legs_stiffness(207e9, 200e-6, (l, l), 0.25) / 1e7, 5)
+    1.07205
+    """
+    return E * area * width**2 / (legs[0] ** 3 + legs[1] ** 3)
+
+
+def tapered_stiffness(E: Expr, inertia: Expr, L: Expr) -> Expr:
+    """Tip stiffness of a cantilever of uniform stress in similar sections [N/m]; `inertia` at its root [m^4]."""
+    return 5 / 3 * E * inertia / L**3
+
+
+def in_series(stiffnesses: Sequence[Expr]) -> Expr:
+    """Stiffness of parts in series; None: all of them are rigid."""
+    if len(stiffnesses) <= 1:
+        return stiffnesses[0] if stiffnesses else None
+    return 1 / sum(1 / k for k in stiffnesses)
+
+
+def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+    """The linkage of a study with the compliance of its parts.
+
+    Parameters
+    ----------
+    study : Study
+        Floats or symbols.
+    design : mapping of str to Expr
+        Design variables by name [SI].
+    stroke : Expr
+        Of the shock strut [m].
+
+    Returns
+    -------
+    Linkage
+    """
+    damper = study.damper
+    link = damper.linkage(design, study.material.youngs_modulus, stroke)
+    if damper.ROTARY:
+        return replace(link, series=damper.series(design))
+    parts = [part for part in damper.elastic(design, study, stroke) if damper.compliance.is_sized(part.part)]
+    given, own = damper.given_compliance(), damper.series(design)
+    for name, value in given.items():
+        if name == "torsion":
+            parts.append(Compliant(name, value / link.reach**2, in_front=True))
+        elif name != "damper" or own is None:
+            parts.append(Compliant(name, value, in_front=name == "link"))
+    if own is not None:
+        parts.append(Compliant("damper", own))
+    front, behind = ([part.stiffness for part in parts if part.in_front == which] for which in (True, False))
+    return replace(link, links=in_series(front), series=in_series(behind))

@@ -21,6 +21,7 @@ from ..strength.materials import Material
 from .changes import changed
 from .components import DAMPER, GEAR, TYRE
 from .envelope import Envelope
+from .loads import GroundLoads
 from .mass_model import MassModel
 from .requirements import Requirements
 from .solver import Solver
@@ -46,6 +47,8 @@ class Study(Record):
     """Speeds and loads at which the requirements hold."""
     requirements: Requirements | None = None
     """What a design must meet; needed where there is something to design."""
+    loads: GroundLoads = GroundLoads()
+    """Loads of landing and ground handling, and which load cases count."""
     design: Design = Design()
     """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()
@@ -135,6 +138,8 @@ class Study(Record):
         data = self.model_dump(exclude_none=True)
         if "gear__order" in changes:  # an older way to name the kind, which would contradict it
             data["gear"].pop("kind")
+        if "requirements__safety_factor" in changes:  # an older name, which the new one would contradict
+            data["requirements"].pop("limit_factor")
         topology = changes.get("damper__topology")
         if "damper__kind" not in changes and topology and f"{topology} {data['damper']['kind']}" not in assemblies():
             data["damper"].pop("kind")  # it does not go with the new layout, which has a kind of its own

@@ -1,0 +1,177 @@
+"""The loads that a study names, and the table of its load cases."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
+
+from ..expressions.calculus import Expr, absolute, is_symbol, where
+from ..load_cases.base import Context, LoadCase, Row, larger, load_cases, load_table, standard_cases, worst_torque
+from ..quantities.kinds import union_of
+from ..quantities.record import Force, Name, Record, Torque, refuse
+from ..quantities.units import Quantity
+from ..reading import quoted
+
+__all__ = ["GroundLoads", "limit_torque", "load_context", "load_rows", "service_torque"]
+
+Mass = Annotated[float, Quantity("kg", above=0, example="250 kg")]
+
+SERVICE_SHARE = 0.25
+"""Of the largest static yaw torque: the torque of everyday turns, under which the damper must have its working stroke."""
+
+
+def _by_name(found: Any) -> Any:
+    """Cases by name: a list names those that count, true and false switch, and a name that is a kind needs no tag."""
+    if isinstance(found, (list, tuple)):
+        known = standard_cases()
+        for position, name in enumerate(found):
+            if not isinstance(name, str) or name not in known:
+                allowed = f"{', '.join(known)}; cases of one's own in a mapping"
+                raise refuse(str(position), f"{quoted(name)} is no load case", allowed)
+        return {kind: {"kind": kind, "enabled": kind in found} for kind in known}
+    if not isinstance(found, dict):
+        return found
+    return {name: _block(name, block) for name, block in found.items()}
+
+
+def _block(name: str, block: Any) -> Any:
+    known = load_cases()
+    if isinstance(block, bool):
+        if name not in standard_cases():
+            allowed = f"{', '.join(standard_cases())}, or a block with its kind"
+            raise refuse(name, f"{quoted(name)} is no load case", allowed)
+        return {"kind": name, "enabled": block}
+    if not isinstance(block, dict):
+        return block
+    if "kind" not in block and name in known:
+        return {"kind": name, **block}
+    if name in known and block["kind"] != name:
+        raise refuse(f"{name}.kind", f"{quoted(block['kind'])} under the name of another case", f"'{name}', or another name")
+    return block
+
+
+_CASE: Any = union_of(load_cases(), ("kind",))
+
+
+class GroundLoads(Record):
+    """Loads of landing and ground handling, and which load cases count."""
+
+    gear: Literal["main", "nose"] = "main"
+    """Kind of gear, which decides what rules it has."""
+    landing_vertical: Force | None = None
+    """Largest vertical reaction of a level landing [N]; left out: landing cases have the largest vertical load of the
+    envelope, whatever part of a landing the rule takes."""
+    static_reaction: Force | None = None
+    """Of the gear at ramp weight [N]; left out: the largest vertical load of the envelope."""
+    aircraft_weight: Force | None = None
+    """At ramp, a force [N]; towing needs it."""
+    brake_torque: Torque | None = None
+    """Nominal maximum static torque of the gear's brakes [N m]."""
+    unsprung_mass: Mass | None = None
+    """Of wheels, brakes, piston [kg]; rebound needs it."""
+    cases: Annotated[dict[Name, _CASE], BeforeValidator(_by_name)] = {}  # noqa: RUF012  # frozen, and copied by pydantic
+    """Cases by name: true or false, or numbers other than the rule's, or cases of one's own (kind: given); a list names the
+    only ones that count."""
+
+    @model_validator(mode="after")
+    def _enabled_with_numbers(self) -> Self:
+        for name, case in self.cases.items():
+            lacking = [key for key in case.NEEDS if key in type(self).model_fields and getattr(self, key) is None]
+            if case.enabled and lacking:
+                raise refuse(f"cases.{name}", f"enabled without {lacking[0]}", f"loads.{lacking[0]}, or leave the case off")
+        if all(case.enabled is False for case in self.all_cases.values()):
+            raise refuse("cases", "no case is left", "one case that counts, or more")
+        return self
+
+    @property
+    def all_cases(self) -> dict[str, LoadCase]:
+        """Every case: the rules', as given or at their defaults, then a user's own."""
+        return {**standard_cases(), **self.cases}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """A case of a known name may leave its kind out, or be true or false; a list has names."""
+        found = handler.resolve_ref_schema(handler(schema))
+        block: dict[str, Any] = found["properties"]["cases"]
+        own = block.pop("additionalProperties")
+        for key in ("type", "propertyNames"):
+            block.pop(key, None)
+        known: dict[str, Any] = {
+            name: {"description": (type(case).__doc__ or "").partition("\n")[0], "type": ["boolean", "object"]}
+            for name, case in standard_cases().items()
+        }
+        names = {"type": "array", "items": {"enum": list(known)}}
+        block["anyOf"] = [{"type": "object", "properties": known, "additionalProperties": own}, names]
+        return found
+
+
+def load_context(study: Any, shimmy_torque: Expr = None) -> Context:
+    """The gear of a study as its load cases see it.
+
+    Parameters
+    ----------
+    study : Study
+        Floats or symbols.
+    shimmy_torque : Expr or None
+        Peak yaw torque of the simulated release or kick [N m].
+
+    Returns
+    -------
+    Context
+    """
+    loads, gear, tyre, required = study.loads, study.gear, study.tyre, study.requirements
+    load = max(study.envelope.loads)
+    side, moment, _, a = tyre.linear(load, tyre.pressure)
+    # a trail beyond the footprint is no trail of a tyre
+    trail = a if not is_symbol(side) and side == 0 else larger(0.0, where(moment < a * side, moment / side, a))
+    peaks, e_eff = tyre.peaks(load, tyre.pressure), gear.lever()
+    half_track = getattr(gear, "half_track", None)
+    return Context(
+        largest_vertical=load,
+        e_eff=e_eff,
+        trail=trail,
+        half_contact_length=a,
+        wheel_radius=gear.wheel_radius,
+        half_track=0.0 if half_track is None else half_track,
+        wheels=1 if half_track is None else 2,
+        gear=loads.gear,
+        **{key: getattr(loads, key) for key in ("landing_vertical", "static_reaction", "aircraft_weight")},
+        brake_torque=loads.brake_torque,
+        unsprung_mass=loads.unsprung_mass,
+        tyre_moment=None if peaks is None else peaks.aligning_moment + absolute(e_eff) * peaks.side_force,
+        limit_torque=None if required is None else required.limit_torque,
+        limit_torque_factor=1.5 if required is None else required.limit_torque_factor,
+        shimmy_torque=shimmy_torque,
+    )
+
+
+def load_rows(study: Any, shimmy_torque: Expr = None) -> tuple[Row, ...]:
+    """The table of load cases of a study: those that count, and the others with the reason.
+
+    Parameters
+    ----------
+    study : Study
+        Floats or symbols.
+    shimmy_torque : Expr or None
+        Peak yaw torque of the simulated release or kick [N m].
+
+    Returns
+    -------
+    tuple of Row
+    """
+    return load_table(study.loads.all_cases, load_context(study, shimmy_torque))
+
+
+def limit_torque(study: Any, shimmy_torque: Expr = None) -> Expr:
+    """Largest limit yaw torque of the cases that count [N m]."""
+    return worst_torque(load_rows(study, shimmy_torque), study.requirements.ultimate_factor)
+
+
+def service_torque(study: Any) -> Expr:
+    """Torque under which the damper must have its working stroke [N m]: given, or a quarter of the largest static one."""
+    given = study.requirements.service_torque
+    if given is not None:
+        return given
+    return SERVICE_SHARE * worst_torque(load_rows(study), study.requirements.ultimate_factor, static_only=True)

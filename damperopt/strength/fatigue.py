@@ -20,6 +20,7 @@ import rainflow
 from ..expressions.calculus import Expr, where
 from ..quantities.record import Fraction, Record
 from ..quantities.units import Quantity
+from .materials import ultimate_stress
 
 __all__ = [
     "Basquin",
@@ -74,25 +75,20 @@ class Basquin:
         sigma_f' [Pa].
     exponent : Expr
         b, negative [1].
-    ultimate : Expr or None
-        Ultimate strength [Pa]; None: a mean stress counts by the coefficient instead (Morrow).
+    ultimate : Expr
+        Ultimate strength [Pa].
     """
 
     coefficient: Expr
     exponent: Expr
-    ultimate: Expr = None
+    ultimate: Expr
 
     @classmethod
     def of(cls, material: Any) -> Basquin | None:
         """Of a material; None where it has no fatigue data."""
         if material.fatigue_exponent is None:
             return None
-        return cls(material.fatigue_strength_coefficient, material.fatigue_exponent, material.ultimate_strength)
-
-    @property
-    def against_mean(self) -> Expr:
-        """Stress at which a mean leaves no amplitude [Pa]."""
-        return self.coefficient if self.ultimate is None else self.ultimate
+        return cls(material.fatigue_strength_coefficient, material.fatigue_exponent, ultimate_stress(material))
 
 
 def goodman(amplitude: Expr, mean: Expr, ultimate: Expr) -> Expr:
@@ -157,9 +153,9 @@ def counted(history: Sequence[float], law: Basquin) -> float:
     """
     damage = 0.0
     for span, mean, count, _, _ in rainflow.extract_cycles(history):
-        if mean >= law.against_mean:
+        if mean >= law.ultimate:
             return math.inf
-        damage += float(of_cycles(goodman(span / 2, mean, law.against_mean), count, law))
+        damage += float(of_cycles(goodman(span / 2, mean, law.ultimate), count, law))
     return damage
 
 

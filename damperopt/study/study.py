@@ -25,6 +25,7 @@ from .loads import GroundLoads
 from .mass_model import MassModel
 from .requirements import Requirements
 from .solver import Solver
+from .stock import CATALOGUE, Available
 from .variables import Design, Variable
 
 __all__ = ["Study", "unit_of"]
@@ -49,6 +50,10 @@ class Study(Record):
     """What a design must meet; needed where there is something to design."""
     loads: GroundLoads = GroundLoads()
     """Loads of landing and ground handling, and which load cases count."""
+    available: Available | None = None
+    """Sizes that exist: tubes, walls, bores; left out: any."""
+    catalogue: CATALOGUE | None = None
+    """Dampers that can be bought: the path of a CSV file, seen from this one, or its rows; left out: one is made."""
     design: Design = Design()
     """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()

@@ -14,12 +14,16 @@ from ..quantities.record import Force, Name, Record, Torque, refuse
 from ..quantities.units import Quantity
 from ..reading import quoted
 
-__all__ = ["GroundLoads", "limit_torque", "load_context", "load_rows", "service_torque"]
+__all__ = ["GroundLoads"]
 
 Mass = Annotated[float, Quantity("kg", above=0, example="250 kg")]
 
 SERVICE_SHARE = 0.25
 """Of the largest static yaw torque: the torque of everyday turns, under which the damper must have its working stroke."""
+
+
+_GIVEN = ("gear", "landing_vertical", "static_reaction", "aircraft_weight", "brake_torque", "unsprung_mass")
+"""Keys that stand in the context as they are."""
 
 
 def _by_name(found: Any) -> Any:
@@ -90,6 +94,70 @@ class GroundLoads(Record):
         """Every case: the rules', as given or at their defaults, then a user's own."""
         return {**standard_cases(), **self.cases}
 
+    def context(self, study: Any, shimmy_torque: Expr = None) -> Context:
+        """The gear of a study as its load cases see it.
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols.
+        shimmy_torque : Expr or None
+            Peak yaw torque of the simulated release or kick [N m].
+        """
+        gear, tyre, required, load = study.gear, study.tyre, study.requirements, max(study.envelope.loads)
+        axle = getattr(gear, "axle", None)  # of two wheels side by side, each with half the load
+        wheels = 1 if axle is None else 2
+        side, moment, _, a = tyre.linear(load / wheels, tyre.pressure)
+        # a trail beyond the footprint is no trail of a tyre
+        trail = a if not is_symbol(side) and side == 0 else larger(0.0, where(moment < a * side, moment / side, a))
+        peaks, e_eff = tyre.peaks(load / wheels, tyre.pressure), gear.lever()
+        tyre_moment = None if peaks is None else wheels * (peaks.aligning_moment + absolute(e_eff) * peaks.side_force)
+        return Context(
+            largest_vertical=load,
+            e_eff=e_eff,
+            trail=trail,
+            half_contact_length=a,
+            wheel_radius=gear.wheel_radius,
+            half_track=0.0 if axle is None else axle.half_track,
+            wheels=wheels,
+            tyre_moment=tyre_moment,
+            limit_torque=None if required is None else required.limit_torque,
+            limit_torque_factor=1.5 if required is None else required.limit_torque_factor,
+            shimmy_torque=shimmy_torque,
+            **{key: getattr(self, key) for key in _GIVEN},
+        )
+
+    def table(self, study: Any, shimmy_torque: Expr = None) -> tuple[Row, ...]:
+        """Load cases of a study: those that count, and the others with the reason.
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols.
+        shimmy_torque : Expr or None
+            Peak yaw torque of the simulated release or kick [N m].
+        """
+        return load_table(self.all_cases, self.context(study, shimmy_torque))
+
+    def limit_torque(self, study: Any, shimmy_torque: Expr = None) -> Expr:
+        """Largest limit yaw torque of the cases that count [N m].
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols, with requirements.
+        shimmy_torque : Expr or None
+            Peak yaw torque of the simulated release or kick [N m].
+        """
+        return worst_torque(self.table(study, shimmy_torque), study.requirements.ultimate_factor)
+
+    def service_torque(self, study: Any) -> Expr:
+        """Torque under which the damper has its working stroke [N m]: given, or a quarter of the largest static one."""
+        required = study.requirements
+        if required.service_torque is not None:
+            return required.service_torque
+        return SERVICE_SHARE * worst_torque(self.table(study), required.ultimate_factor, static_only=True)
+
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """A case of a known name may leave its kind out, or be true or false; a list has names."""
@@ -105,73 +173,3 @@ class GroundLoads(Record):
         names = {"type": "array", "items": {"enum": list(known)}}
         block["anyOf"] = [{"type": "object", "properties": known, "additionalProperties": own}, names]
         return found
-
-
-def load_context(study: Any, shimmy_torque: Expr = None) -> Context:
-    """The gear of a study as its load cases see it.
-
-    Parameters
-    ----------
-    study : Study
-        Floats or symbols.
-    shimmy_torque : Expr or None
-        Peak yaw torque of the simulated release or kick [N m].
-
-    Returns
-    -------
-    Context
-    """
-    loads, gear, tyre, required = study.loads, study.gear, study.tyre, study.requirements
-    load = max(study.envelope.loads)
-    side, moment, _, a = tyre.linear(load, tyre.pressure)
-    # a trail beyond the footprint is no trail of a tyre
-    trail = a if not is_symbol(side) and side == 0 else larger(0.0, where(moment < a * side, moment / side, a))
-    peaks, e_eff = tyre.peaks(load, tyre.pressure), gear.lever()
-    half_track = getattr(gear, "half_track", None)
-    return Context(
-        largest_vertical=load,
-        e_eff=e_eff,
-        trail=trail,
-        half_contact_length=a,
-        wheel_radius=gear.wheel_radius,
-        half_track=0.0 if half_track is None else half_track,
-        wheels=1 if half_track is None else 2,
-        gear=loads.gear,
-        **{key: getattr(loads, key) for key in ("landing_vertical", "static_reaction", "aircraft_weight")},
-        brake_torque=loads.brake_torque,
-        unsprung_mass=loads.unsprung_mass,
-        tyre_moment=None if peaks is None else peaks.aligning_moment + absolute(e_eff) * peaks.side_force,
-        limit_torque=None if required is None else required.limit_torque,
-        limit_torque_factor=1.5 if required is None else required.limit_torque_factor,
-        shimmy_torque=shimmy_torque,
-    )
-
-
-def load_rows(study: Any, shimmy_torque: Expr = None) -> tuple[Row, ...]:
-    """The table of load cases of a study: those that count, and the others with the reason.
-
-    Parameters
-    ----------
-    study : Study
-        Floats or symbols.
-    shimmy_torque : Expr or None
-        Peak yaw torque of the simulated release or kick [N m].
-
-    Returns
-    -------
-    tuple of Row
-    """
-    return load_table(study.loads.all_cases, load_context(study, shimmy_torque))
-
-
-def limit_torque(study: Any, shimmy_torque: Expr = None) -> Expr:
-    """Largest limit yaw torque of the cases that count [N m]."""
-    return worst_torque(load_rows(study, shimmy_torque), study.requirements.ultimate_factor)
-
-
-def service_torque(study: Any) -> Expr:
-    """Torque under which the damper must have its working stroke [N m]: given, or a quarter of the largest static one."""
-    given = study.requirements.service_torque
-    if given is not None:
-        return given
-    return SERVICE_SHARE * worst_torque(load_rows(study), study.requirements.ultimate_factor, static_only=True)

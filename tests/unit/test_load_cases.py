@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import casadi as ca
 import pytest
@@ -11,10 +12,22 @@ from tolerances import QUADRATURE, ROUNDING
 import damperopt
 from damperopt.load_cases.base import Context, Loads, Row, load_cases, load_table, standard_cases, trail_left, worst_torque
 from damperopt.load_cases.handling import POUND, scrub_radius, towing_force
-from damperopt.study.loads import limit_torque, load_context, load_rows, service_torque
+from damperopt.symbols import data_values, symbolic
 
 MAIN = Context(largest_vertical=150e3, e_eff=0.12, trail=0.03, half_contact_length=0.1, wheel_radius=0.4)
 """Main gear, 150 kN as the vertical of every case; twice that in a landing is the same for a rule that takes half."""
+
+
+def rows_of(study):
+    return {row.name: row for row in study.loads.table(study)}
+
+
+def limit_torque(study, **shimmy):
+    return study.loads.limit_torque(study, **shimmy)
+
+
+def service_torque(study):
+    return study.loads.service_torque(study)
 
 
 def loads_of(kind, context=MAIN, **numbers):
@@ -122,7 +135,7 @@ def test_tyre_moment_is_given_or_a_factor_on_the_tyre():
 
 
 def test_main_gear_is_sized_by_its_side_load(main_gear):
-    rows = {row.name: row for row in load_rows(main_gear)}
+    rows = rows_of(main_gear)
     assert not rows["side_load"].off
     assert limit_torque(main_gear) == pytest.approx(14400)
     assert service_torque(main_gear) == pytest.approx(3600)
@@ -135,13 +148,13 @@ def test_main_gear_is_sized_by_its_side_load(main_gear):
 
 def test_todays_loads_are_one_case(main_gear):
     thesis = main_gear.replace(loads__cases=["tyre_moment"])
-    assert [row.name for row in load_rows(thesis) if not row.off] == ["tyre_moment"]
+    assert [name for name, row in rows_of(thesis).items() if not row.off] == ["tyre_moment"]
     assert limit_torque(thesis.replace(requirements__limit_torque=10e3)) == 10e3
     assert service_torque(thesis.replace(requirements__service_torque=1e3)) == 1e3
 
 
 def test_nose_gear_has_its_own_rules_and_what_was_not_read_is_off(main_gear):
-    rows = {row.name: row for row in load_rows(main_gear.replace(loads__gear="nose"))}
+    rows = rows_of(main_gear.replace(loads__gear="nose"))
     assert "main gear" in rows["side_load"].off
     assert "has not been read" in rows["nose_yaw"].off
     assert not rows["turning"].off
@@ -166,9 +179,33 @@ def test_an_ultimate_case_counts_by_its_part_at_limit():
 
 
 def test_trail_of_a_tyre_is_inside_its_footprint(main_gear):
-    assert load_context(main_gear).trail == 0.1  # 71 m by the thesis' coefficients
+    assert main_gear.loads.context(main_gear).trail == 0.1  # 71 m by the thesis' coefficients
     brush = damperopt.load(Path(damperopt.__file__).with_name("starter.yaml"))
-    assert load_context(brush).trail == pytest.approx(0.1 / 3)
+    assert brush.loads.context(brush).trail == pytest.approx(0.1 / 3)
+
+
+def test_numbers_of_a_study_enter_as_symbols(main_gear):
+    study = main_gear.replace(loads__landing_vertical=280e3, loads__aircraft_weight=3e5, loads__static_reaction=140e3)
+    twin = symbolic(study)
+    torques = [twin.study.loads.limit_torque(twin.study), twin.study.loads.service_torque(twin.study)]
+    found = ca.Function("torques", [twin.data], [*torques, ca.jacobian(torques[0], twin.data)])(data_values(study))
+    assert [float(value) for value in found[:2]] == pytest.approx([0.8 * 140e3 * 0.12, 0.2 * 140e3 * 0.12], rel=ROUNDING)
+    slopes = dict(zip(twin.names, found[2].full().ravel(), strict=True))
+    moved = {name: slope for name, slope in slopes.items() if slope}
+    lever = {"gear.caster_length": 0.8 * 140e3, "gear.rake_angle": 0.8 * 140e3 * 0.362}  # e_eff = e cos + (R_w + ..) tan
+    assert moved == pytest.approx(lever | {"loads.landing_vertical": 0.4 * 0.12})
+
+
+def test_two_wheels_share_the_load(main_gear):
+    axle = SimpleNamespace(half_track=0.2)
+    gear = SimpleNamespace(axle=axle, wheel_radius=0.4, lever=lambda: 0.12)
+    brush = damperopt.load(Path(damperopt.__file__).with_name("starter.yaml"))
+    loads, tyre, required = main_gear.loads, brush.tyre, main_gear.requirements
+    twin = SimpleNamespace(gear=gear, tyre=tyre, envelope=main_gear.envelope, requirements=required, loads=loads)
+    context, peaks = loads.context(twin), tyre.peaks(75e3, None)
+    assert (context.wheels, context.half_track, context.largest_vertical) == (2, 0.2, 150e3)
+    assert context.tyre_moment == pytest.approx(2 * (peaks.aligning_moment + 0.12 * peaks.side_force))
+    assert rows_of(twin)["braked_roll"].loads.yaw_torque == pytest.approx(0.8 * 150e3 * 0.2)
 
 
 def test_symbols_are_taken_as_well():

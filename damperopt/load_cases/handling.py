@@ -120,7 +120,7 @@ class Pivoting(LoadCase):
 
     def forces(self, context: Context) -> Loads:
         """Friction times vertical times the mean distance of the footprint from the pivot."""
-        radius = scrub_radius(context.half_contact_length, context.half_track if context.wheels > 1 else None, self.pressure)
+        radius = scrub_radius(context.half_contact_length, context.half_track, self.pressure)
         return Loads(context.static, moment=self.friction * context.static * radius, acts_at="footprint")
 
 
@@ -132,7 +132,7 @@ def scrub_radius(a: Expr, half_track: Expr = None, pressure: str = "uniform") ->
     a : Expr
         Half contact length [m].
     half_track : Expr or None
-        Of two wheels [m]; None: one wheel on the axis.
+        Of two wheels [m]; None or 0: on the axis.
     pressure : str
         ``uniform`` or ``parabolic``.
 
@@ -141,7 +141,7 @@ def scrub_radius(a: Expr, half_track: Expr = None, pressure: str = "uniform") ->
     >>> scrub_radius(0.1), round(scrub_radius(0.1, pressure="parabolic"), 12)
     (0.05, 0.0375)
     """
-    if half_track is None:
+    if half_track is None or (isinstance(half_track, (int, float)) and half_track == 0):
         return a / 2 if pressure == "uniform" else 3 * a / 8
     # w half track, r distance of the ends; integrals of r and x^2 r over 0 < x < a
     w = half_track

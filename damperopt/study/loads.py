@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, GetJsonSchemaHandler, model_validator
@@ -19,7 +20,7 @@ __all__ = ["GroundLoads"]
 Mass = Annotated[float, Quantity("kg", above=0, example="250 kg")]
 
 SERVICE_SHARE = 0.25
-"""Of the largest static yaw torque: the torque of everyday turns, under which the damper must have its working stroke."""
+"""Torque of everyday turns over the largest static yaw torque of the rules."""
 
 
 _GIVEN = ("gear", "landing_vertical", "static_reaction", "aircraft_weight", "brake_torque", "unsprung_mass")
@@ -105,22 +106,23 @@ class GroundLoads(Record):
             Peak yaw torque of the simulated release or kick [N m].
         """
         gear, tyre, required, load = study.gear, study.tyre, study.requirements, max(study.envelope.loads)
-        axle = getattr(gear, "axle", None)  # of two wheels side by side, each with half the load
-        wheels = 1 if axle is None else 2
-        side, moment, _, a = tyre.linear(load / wheels, tyre.pressure)
+        at_rest = {state.name: 0.0 for state in gear.STATES}
+        wheels = gear.wheels(at_rest, study.envelope.speed.max, load)
+        half_track = getattr(getattr(gear, "axle", None), "half_track", 0.0)
+        side, moment, _, a = tyre.linear(wheels[0].load, tyre.pressure)
         # a trail beyond the footprint is no trail of a tyre
         trail = a if not is_symbol(side) and side == 0 else larger(0.0, where(moment < a * side, moment / side, a))
-        peaks, e_eff = tyre.peaks(load / wheels, tyre.pressure), gear.lever()
-        tyre_moment = None if peaks is None else wheels * (peaks.aligning_moment + absolute(e_eff) * peaks.side_force)
+        peaks, e_eff = [tyre.peaks(wheel.load, tyre.pressure) for wheel in wheels], gear.lever()
+        of_wheels = [None if of is None else of.aligning_moment + absolute(e_eff) * of.side_force for of in peaks]
         return Context(
             largest_vertical=load,
             e_eff=e_eff,
             trail=trail,
             half_contact_length=a,
             wheel_radius=gear.wheel_radius,
-            half_track=0.0 if axle is None else axle.half_track,
-            wheels=wheels,
-            tyre_moment=tyre_moment,
+            half_track=half_track,
+            wheels=len(wheels),
+            tyre_moment=None if any(of is None for of in of_wheels) else sum(of_wheels),
             limit_torque=None if required is None else required.limit_torque,
             limit_torque_factor=1.5 if required is None else required.limit_torque_factor,
             shimmy_torque=shimmy_torque,
@@ -152,11 +154,21 @@ class GroundLoads(Record):
         return worst_torque(self.table(study, shimmy_torque), study.requirements.ultimate_factor)
 
     def service_torque(self, study: Any) -> Expr:
-        """Torque under which the damper has its working stroke [N m]: given, or a quarter of the largest static one."""
-        required = study.requirements
-        if required.service_torque is not None:
-            return required.service_torque
-        return SERVICE_SHARE * worst_torque(self.table(study), required.ultimate_factor, static_only=True)
+        """Torque under which the damper has its working stroke [N m].
+
+        Given, or a quarter of the largest static yaw torque that the rules' cases have at the largest vertical load of the
+        envelope. No limit load, factor, or case of the study enters: more of them would make a stroke easier to have.
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols, with requirements.
+        """
+        if study.requirements.service_torque is not None:
+            return study.requirements.service_torque
+        nothing: dict[str, Any] = dict.fromkeys((*_GIVEN[1:], "tyre_moment", "limit_torque", "shimmy_torque"))
+        at_envelope = replace(self.context(study), **nothing)
+        return SERVICE_SHARE * worst_torque(load_table(standard_cases(), at_envelope), static_only=True)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:

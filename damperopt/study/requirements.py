@@ -126,7 +126,7 @@ class Requirements(Record):
     """Least ratio of the damper's working stroke at the limit event to the apex clearance."""
     service_torque: Torque | None = None
     """Yaw torque of everyday turns, under which the damper has its working stroke [N m]; left out: a quarter of the largest
-    static yaw torque of the load cases."""
+    static yaw torque of the rules at the largest load of the envelope."""
     lug_distance: LengthRange
     """Allowed distance between the strut lugs, 2 L cos(gamma) [m]."""
     reach: LengthRange

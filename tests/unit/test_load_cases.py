@@ -153,6 +153,25 @@ def test_todays_loads_are_one_case(main_gear):
     assert service_torque(thesis.replace(requirements__service_torque=1e3)) == 1e3
 
 
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"requirements__limit_torque": 50e3},
+        {"requirements__limit_torque_factor": 3.0},
+        {"requirements__limit_factor": 2.0},
+        {"requirements__ultimate_factor": 2.0},
+        {"loads__landing_vertical": 900e3},
+        {"loads__static_reaction": 400e3},
+        {"loads__aircraft_weight": 2e6},
+        {"loads__cases": {"turning": {"side": 0.9}}},
+        {"loads__cases": {"mine": {"kind": "given", "vertical": 1e5, "torque": 60e3}}},
+        {"loads__cases": ["tyre_moment"]},
+    ],
+)
+def test_no_limit_load_and_no_factor_makes_a_stroke_easier_to_have(main_gear, more):
+    assert service_torque(main_gear.replace(**more)) == service_torque(main_gear)
+
+
 def test_nose_gear_has_its_own_rules_and_what_was_not_read_is_off(main_gear):
     rows = rows_of(main_gear.replace(loads__gear="nose"))
     assert "main gear" in rows["side_load"].off
@@ -189,7 +208,7 @@ def test_numbers_of_a_study_enter_as_symbols(main_gear):
     twin = symbolic(study)
     torques = [twin.study.loads.limit_torque(twin.study), twin.study.loads.service_torque(twin.study)]
     found = ca.Function("torques", [twin.data], [*torques, ca.jacobian(torques[0], twin.data)])(data_values(study))
-    assert [float(value) for value in found[:2]] == pytest.approx([0.8 * 140e3 * 0.12, 0.2 * 140e3 * 0.12], rel=ROUNDING)
+    assert [float(value) for value in found[:2]] == pytest.approx([0.8 * 140e3 * 0.12, 3600.0], rel=ROUNDING)
     slopes = dict(zip(twin.names, found[2].full().ravel(), strict=True))
     moved = {name: slope for name, slope in slopes.items() if slope}
     lever = {"gear.caster_length": 0.8 * 140e3, "gear.rake_angle": 0.8 * 140e3 * 0.362}  # e_eff = e cos + (R_w + ..) tan
@@ -198,7 +217,8 @@ def test_numbers_of_a_study_enter_as_symbols(main_gear):
 
 def test_two_wheels_share_the_load(main_gear):
     axle = SimpleNamespace(half_track=0.2)
-    gear = SimpleNamespace(axle=axle, wheel_radius=0.4, lever=lambda: 0.12)
+    wheels = [SimpleNamespace(load=75e3)] * 2
+    gear = SimpleNamespace(axle=axle, STATES=(), wheels=lambda x, speed, load: wheels, wheel_radius=0.4, lever=lambda: 0.12)
     brush = damperopt.load(Path(damperopt.__file__).with_name("starter.yaml"))
     loads, tyre, required = main_gear.loads, brush.tyre, main_gear.requirements
     twin = SimpleNamespace(gear=gear, tyre=tyre, envelope=main_gear.envelope, requirements=required, loads=loads)

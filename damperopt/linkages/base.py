@@ -136,8 +136,8 @@ class TorqueLinks(Layout):
     I_LINK: ClassVar = DesignVariable(
         "I_link", "m^4", "$I_{link}$", "second moment of area at the root of a torque link", example="1e-6 m^4"
     )
-    ELASTIC: ClassVar = ("link",)
-    SIZES: ClassVar = (A_LINK, I_LINK)
+    ELASTIC: ClassVar[tuple[str, ...]] = ("link",)
+    SIZES: ClassVar[tuple[DesignVariable, ...]] = (A_LINK, I_LINK)
     SIDE: ClassVar = DesignVariable("b", "m", "$b$", "side distance of arm or damper root from the axis", example="0.2 m")
     ARM: ClassVar = DesignVariable("I_arm", "m^4", "$I_{arm}$", "second moment of area of the arm", example="3.4e-6 m^4")
 
@@ -178,7 +178,8 @@ class TorqueLinks(Layout):
         more = {"area": design["A_link"], "share": leg / width, "length": leg, "variable": "A_link"}
         feet = {"left": -width / 2, "right": width / 2}
         return tuple(
-            Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more) for side, y in feet.items()
+            Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more)
+            for side, y in feet.items()
         )
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:

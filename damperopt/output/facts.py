@@ -138,14 +138,15 @@ def _event(study: Study, result: DesignResult) -> LimitEvent | None:
         arm_moment=math.nan,
         spring_force=peaks["spring_force"],
         spring_energy=math.nan,  # like the other two: no size of a member hangs on it
-        safety_factor=study.required.safety_factor,
+        safety_factor=study.required.limit_factor,
+        ultimate_factor=study.required.ultimate_factor,
     )
 
 
 def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
     """Height and wall of the section of a member; at its root, if it is a cantilever that its load sizes."""
     section = getattr(study.mass, member.section)
-    allowable = allowable_stress(study.material, study.required.safety_factor)
+    allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
     if member.inertia is None:
         length = distance(member.start, member.end) if member.length is None else member.length
         area = area_for_modulus(section, getattr(event, member.load) * length / allowable)
@@ -165,7 +166,7 @@ def _cylinder(study: Study, event: LimitEvent, rod: float | None) -> list[Size]:
     if rod is None:
         return []
     model = study.mass
-    sigma = allowable_stress(model.damper_material, study.required.safety_factor)
+    sigma = allowable_stress(model.damper_material, study.required.limit_factor, study.required.ultimate_factor)
     least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}
     diameter = float(bore(event, model, rod))
     needed = model.working_pressure * diameter / (2 * sigma)

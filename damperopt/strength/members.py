@@ -8,13 +8,15 @@ from typing import Any
 from ..expressions.calculus import Expr, is_symbol, sqrt
 from ..ports.linkage import Member, Point
 from ..ports.sizing import LimitEvent
-from .materials import allowable_stress
+from .fatigue import Basquin, FlightStresses, life_damage
+from .materials import allowable_stress, ultimate_stress
 from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
 
 __all__ = [
     "allowables",
     "belleville_mass",
     "distance",
+    "fatigue_ratio",
     "least_sections",
     "member_mass",
     "root_stress",
@@ -46,20 +48,35 @@ def member_mass(member: Member, event: LimitEvent, study: Any) -> Expr:
     if member.inertia is not None:
         return member.taper * rho * length * area(section, member.inertia) * with_fittings
     moment = getattr(event, member.load) * length
-    allowable = allowable_stress(study.material, study.requirements.safety_factor)
+    allowable = allowable_stress(study.material, event.safety_factor, event.ultimate_factor)
     return model.cantilever_taper * rho * length * area_for_modulus(section, moment / allowable) * with_fittings
 
 
 def allowables(material: Any, event: LimitEvent) -> dict[str, Expr]:
     """Stress at the limit load that each check allows [Pa]: yield at limit, rupture (of a laminate the strain) at ultimate."""
-    found = {}
-    if material.yield_strength is not None:
-        found["limit"] = material.yield_strength / event.safety_factor
-    if material.ultimate_strength is not None:
-        found["ultimate"] = material.ultimate_strength / event.ultimate_factor
-    if material.design_strain is not None:
-        found["ultimate"] = material.youngs_modulus * material.design_strain / event.ultimate_factor
-    return found
+    found = {"ultimate": ultimate_stress(material) / event.ultimate_factor}
+    return found if material.yield_strength is None else {"limit": material.yield_strength / event.safety_factor, **found}
+
+
+def fatigue_ratio(member: Member, stress: Expr, event: LimitEvent, study: Any) -> Expr:
+    """Stresses of a life over those whose damage, scatter factor included, is 1; None without data or spectrum.
+
+    Parameters
+    ----------
+    member : Member
+        What the damper loads feels the transients of landing alone.
+    stress : Expr
+        At the limit load [Pa].
+    event : LimitEvent
+    study : Study
+    """
+    law = Basquin.of(study.material)
+    if law is None or event.flight is None:
+        return None
+    shares = event.flight
+    turn, tow = (0.0, 0.0) if member.load == "damper_force" else (shares.turn * stress, shares.tow * stress)
+    stresses = FlightStresses(turn, tow, shares.landing * stress, shares.decay)
+    return life_damage(stresses, study.requirements.fatigue.spectrum, law) ** -law.exponent
 
 
 def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, Expr]:
@@ -75,17 +92,23 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     Returns
     -------
     dict of str to Expr
-        ``limit``, ``ultimate``, and for a leg ``buckling``: Euler's load of pinned ends at ultimate.
+        ``limit``, ``ultimate``, ``fatigue``, and for a leg ``buckling``: Euler's load of pinned ends at ultimate.
     """
     section, load = getattr(study.mass, member.section), getattr(event, member.load)
     allowed = allowables(study.material, event)
     if member.area is None:
         lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
-        return {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        found = {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        stress = load * lever / section_modulus(section, member.inertia)
+        ratio = fatigue_ratio(member, stress, event, study)
+        return found if ratio is None else found | {"fatigue": member.inertia * ratio ** (4 / 3)}
     force, length = load * member.share, distance(member.start, member.end) if member.length is None else member.length
     kappa_area, _ = shape_numbers(section)
     least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
     euler = event.ultimate_factor * force / (math.pi**2 * study.material.youngs_modulus)
+    ratio = fatigue_ratio(member, force / member.area, event, study)
+    if ratio is not None:
+        least["fatigue"] = member.area * ratio
     return least | {"buckling": kappa_area * length * sqrt(euler)}
 
 
@@ -111,5 +134,5 @@ def root_stress_of_force(member: Member, force: Expr, study: Any) -> Expr:
 def belleville_mass(event: LimitEvent, study: Any) -> Expr:
     """Mass of a Belleville stack [kg]: energy over eta sigma^2/(2 E) per volume."""
     steel = study.mass.damper_material
-    sigma = allowable_stress(steel, study.requirements.safety_factor)
+    sigma = allowable_stress(steel, event.safety_factor, event.ultimate_factor)
     return steel.density * event.spring_energy / (study.mass.spring_utilisation * sigma**2 / (2 * steel.youngs_modulus))

@@ -83,7 +83,7 @@ class Study(Record):
                 raise refuse(
                     "requirements.limit_torque",
                     "missing key",
-                    f"a torque, or a load case with one: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
+                    f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
 

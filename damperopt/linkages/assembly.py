@@ -62,7 +62,9 @@ class Assembly:
         compliance = getattr(self, "compliance", None)
         if compliance is None:
             return {}
-        given = {part: value for part in type(compliance).model_fields if not isinstance(value := getattr(compliance, part), str)}
+        given = {
+            part: value for part in type(compliance).model_fields if not isinstance(value := getattr(compliance, part), str)
+        }
         older = {"link": getattr(self, "link_stiffness", None), "damper": getattr(self, "series_stiffness", None)}
         return given | {part: value for part, value in older.items() if value is not None}
 

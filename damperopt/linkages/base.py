@@ -178,7 +178,8 @@ class TorqueLinks(Layout):
         more = {"area": design["A_link"], "share": leg / width, "length": leg, "variable": "A_link"}
         feet = {"left": -width / 2, "right": width / 2}
         return tuple(
-            Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more) for side, y in feet.items()
+            Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more)
+            for side, y in feet.items()
         )
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:

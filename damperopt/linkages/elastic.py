@@ -15,10 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Tag, model_validator
-from typing_extensions import Annotated
 
 from ..expressions.calculus import Expr, sqrt
 from ..ports.linkage import Compliant, Linkage

@@ -59,7 +59,7 @@ class Utas(TorqueLinks):
         )
 
     def _softer(self, b: Expr, l_arm: Expr) -> Expr:
-        """Deflection of the tip over that of an arm whose root does not turn: a hinge line of its section turns by M b/(E I)."""
+        """Deflection of the tip over that of an arm whose root is held: a hinge line of its section turns by M b/(E I)."""
         return 1 + 3 * b / l_arm if self.is_sized("arm") else 1
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
@@ -93,5 +93,7 @@ class Utas(TorqueLinks):
         links = self.link_members("lower torque link", design, -h, apex)
         if not self.is_sized("arm"):
             return (*links, arm, damper)
-        beam = replace(arm, name="hinge line", part="hinge line", kind="hinge", start=(0.0, -b, h), end=(0.0, b, h), length=2 * b)
+        beam = replace(
+            arm, name="hinge line", part="hinge line", kind="hinge", start=(0.0, -b, h), end=(0.0, b, h), length=2 * b
+        )
         return (*links, arm, beam, damper)

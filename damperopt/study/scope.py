@@ -45,7 +45,9 @@ def _chain(damper: Any) -> str:
     given, parts = damper.given_compliance(), damper.elastic_parts()
     words = {"link": "torque links", "arm": "bending arm along itself", "support": "support", "damper": "oil column and rod"}
     sized = [words[part] for part in parts if damper.is_sized(part)]
-    rigid = [words[part] for part in words if part not in given and not damper.is_sized(part) and part in ("link", "damper", *parts)]
+    rigid = [
+        words[part] for part in words if part not in given and not damper.is_sized(part) and part in ("link", "damper", *parts)
+    ]
     found = [f"elastic by their sections: {', '.join(sized)}"] if sized else []
     found += [f"as stiff as the study says: {', '.join(words.get(p, p) for p in given)}"] if given else []
     return "; ".join(found + ([f"rigid: {', '.join(rigid)}"] if rigid else []))

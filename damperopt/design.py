@@ -23,6 +23,7 @@ from .optimum.answer import (
 )
 from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution
+from .optimum.left_out import left_out_by_number
 from .optimum.local import best_local, held_again
 from .optimum.multistart import StartOutcome, run_starts, starting_designs
 from .optimum.problem import DesignProblem
@@ -342,7 +343,7 @@ def _checked(
             "constraints": constraints,
             "decay": decay,
             "decided_by": weights,
-            "not_checked": not_checked(study),
+            "not_checked": (*left_out_by_number(study, solution.design), *not_checked(study)),
             "certificate": certificate,
             "verification": verification,
             "sensitivities": sensitivities(problem, solution, solver.decay if decay else None),

@@ -112,7 +112,8 @@ class Hydraulic(Damper):
             Size("A_piston", "m^2", area, {"piston_pressure": (piston_area(event, model), ("mass.working_pressure", *torque))}),
             Size("s_damper", "m", stroke, {"damper_stroke": (event.stroke, torque)}),
         )
-        return Sized(sized.masses, (*sized.sizes, *chosen), sized.length)
+        masses = {part: mass + model.damper_fixed_mass for part, mass in sized.masses.items()}
+        return Sized(masses, (*sized.sizes, *chosen), sized.length)
 
     def _cylinder(self, event: LimitEvent, model: Any, diameter: Expr, area: Expr) -> Sized:
         rod = Size("rod_diameter", "m", diameter, rod_diameters(event, model), start=0.02, lower=1e-5, upper=10.0)

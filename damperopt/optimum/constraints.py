@@ -142,4 +142,14 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     if linkage.damper_length is not None and sized.needed_length is not None:
         length, needed = linkage.damper_length, sized.needed_length
         blocks.append(Constraint("damper_length", length, needed, True, "m", ("mass.dead_length",)))
+    elif study.damper.has_sized_parts() and sized.needed_length is not None:  # across the apex, where the bay has room
+        blocks.append(Constraint("apex_room", sized.needed_length, required.apex_room, False, "m", ("requirements.apex_room",)))
+    stop = study.damper.stop
+    if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
+        keys = ("damper.end_stop.stroke",)
+        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", keys, ratio=True))
+    most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
+    if study.damper.has_sized_parts() and most is not None:
+        width = study.damper.links.width(design["L"])
+        blocks.append(Constraint("hinge_width", width, most, False, "m", ("damper.links.hinge_width_max",)))
     return blocks

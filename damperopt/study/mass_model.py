@@ -49,6 +49,8 @@ class MassModel(Record):
     """Of the damper fluid [kg/m^3]."""
     damper_fittings_fraction: Fraction = 0.5
     """Eyes, seals, valve and bearings, as a fraction of cylinder, rod and caps."""
+    damper_fixed_mass: Annotated[float, Quantity("kg", at_least=0, example="1 kg")] = 1.0
+    """Reservoir, valve, thermal compensator: what no size of the damper changes; a typical figure, of elastic dampers alone."""
     spring_utilisation: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.3
     """Stored energy of a Belleville stack over that of the same volume under uniform stress."""
     lower_lug_height: Coordinate = 0.0

@@ -116,6 +116,8 @@ class Requirements(Record):
     """Allowed distance between the strut lugs, 2 L cos(gamma) [m]."""
     reach: LengthRange
     """Allowed reach of the apex from the strut axis, L sin(gamma) [m]."""
+    apex_room: Length = 0.4
+    """Most that a damper across the apex may be long, pin to pin, where no other length of the layout limits it [m]."""
     tyre_clearance: Distance = 0.05
     """Least height of the apex above the top of the tyre [m]."""
 

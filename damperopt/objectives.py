@@ -14,16 +14,9 @@ from .errors import ConfigError
 from .ports.linkage import Linkage
 from .ports.sizing import LimitEvent, Size, Sized
 from .strength.limit_event import limit_event
-from .strength.members import least_sections
+from .strength.members import member_sizes
 
-__all__ = ["SizedLayout", "limit_event", "member_sizes", "sized_layout"]
-
-RELAXED = {
-    "limit": ("requirements.limit_torque", "requirements.safety_factor"),
-    "ultimate": ("requirements.limit_torque",),
-    "buckling": ("requirements.limit_torque",),
-}
-"""What would relax each check of a section."""
+__all__ = ["SizedLayout", "limit_event", "sized_layout"]
 
 
 @dataclass(frozen=True)
@@ -79,28 +72,3 @@ def sized_layout(study: Any, design: Mapping[str, Any], linkage: Linkage, load: 
         )
     masses = {**study.damper.masses(design, event, study), **damper.masses}
     return SizedLayout(event, masses, (*member_sizes(study, design, event), *damper.sizes), damper.length)
-
-
-def member_sizes(study: Any, design: Mapping[str, Any], event: LimitEvent) -> list[Size]:
-    """Sections of members that are design variables, with the least that strength asks of each.
-
-    Parameters
-    ----------
-    study : Study
-    design : mapping of str to Expr
-    event : LimitEvent
-
-    Returns
-    -------
-    list of Size
-        Named by their variables; members that share one are sized by the first of them.
-    """
-    declared = {variable.name: variable for variable in study.damper.variables()}
-    found: dict[str, Size] = {}
-    for member in study.damper.members(design):
-        if member.variable and member.variable not in found:
-            name, unit = member.variable, declared[member.variable].unit
-            least = least_sections(member, event, study).items()
-            limits = {f"{member.kind}_{check}": (value, RELAXED[check]) for check, value in least}
-            found[name] = Size(name, unit, design[name], limits)
-    return list(found.values())

@@ -102,7 +102,13 @@ class Arreaza(TorqueLinks):
 
     def _support(self, design: Mapping[str, Expr], end: Point, ell: Expr, h: Expr) -> tuple[Member, ...]:
         L, b = design["L"], design["b"]
-        rest = {"part": "support", "kind": "support", "section": "support_section", "end": end, "load": "damper_force"}
+        rest: dict[str, Any] = {
+            "part": "support",
+            "kind": "support",
+            "section": "support_section",
+            "end": end,
+            "load": "damper_force",
+        }
         if not self.is_sized("support"):
             # weighed as a cantilever of length b, which is less than what reaches from the hinge line to the damper
             return (Member("rigid support", start=(0.0, -b, h), length=b, **{**rest, "part": "support arm"}),)
@@ -110,12 +116,12 @@ class Arreaza(TorqueLinks):
             on_strut = self.support.root == "strut"
             length, lever = (sqrt(ell**2 + b**2), ell) if on_strut else (L, L)
             start = (0.0, 0.0, 0.0) if on_strut else (0.0, -b, h)
-            root = {"inertia": design["I_support"], "taper": TAPERED_MASS, "variable": "I_support"}
+            root: dict[str, Any] = {"inertia": design["I_support"], "taper": TAPERED_MASS, "variable": "I_support"}
             return (Member("support", start=start, length=length, bending_length=lever, **root, **rest),)
         width = self.links.width(L)
         members = []
         for name, foot in (("far", width / 2), ("near", -width / 2)):  # from the damper's end; the far one is the longer
             leg = leg_length(L, b + foot)
-            more = {"area": design["A_support"], "share": leg / width, "length": leg, "variable": "A_support"}
+            more: dict[str, Any] = {"area": design["A_support"], "share": leg / width, "length": leg, "variable": "A_support"}
             members.append(Member(f"support, {name} leg", start=(0.0, foot, h), **more, **rest))
         return tuple(members)

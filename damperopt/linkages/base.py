@@ -136,8 +136,8 @@ class TorqueLinks(Layout):
     I_LINK: ClassVar = DesignVariable(
         "I_link", "m^4", "$I_{link}$", "second moment of area at the root of a torque link", example="1e-6 m^4"
     )
-    ELASTIC: ClassVar = ("link",)
-    SIZES: ClassVar = (A_LINK, I_LINK)
+    ELASTIC: ClassVar[tuple[str, ...]] = ("link",)
+    SIZES: ClassVar[tuple[DesignVariable, ...]] = (A_LINK, I_LINK)
     SIDE: ClassVar = DesignVariable("b", "m", "$b$", "side distance of arm or damper root from the axis", example="0.2 m")
     ARM: ClassVar = DesignVariable("I_arm", "m^4", "$I_{arm}$", "second moment of area of the arm", example="3.4e-6 m^4")
 

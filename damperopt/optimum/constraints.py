@@ -96,7 +96,7 @@ def _arm(study: Any, member: Member, event: LimitEvent) -> list[Constraint]:
     else:  # the rigid chain of the thesis, with one factor
         allowed_by = {"limit": allowable_stress(study.material, required.safety_factor)}
     for check, allowed in allowed_by.items():
-        relaxed = ("requirements.safety_factor", *torque) if check == "limit" else torque
+        relaxed: tuple[str, ...] = ("requirements.safety_factor", *torque) if check == "limit" else torque
         label = f"{name}_stress" if check == "limit" else f"{name}_{check}"
         found.append(Constraint(label, stress, allowed, False, "Pa", relaxed, ratio=True))
     if study.material.has_fatigue_data:
@@ -146,8 +146,8 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
         blocks.append(Constraint("apex_room", sized.needed_length, required.apex_room, False, "m", ("requirements.apex_room",)))
     stop = study.damper.stop
     if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
-        keys = ("damper.end_stop.stroke",)
-        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", keys, ratio=True))
+        relaxed = ("damper.end_stop.stroke",)
+        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", relaxed, ratio=True))
     most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
     if study.damper.has_sized_parts() and most is not None:
         width = study.damper.links.width(design["L"])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from ..expressions.calculus import Expr, is_symbol, sqrt
 from ..ports.linkage import Member, Point
-from ..ports.sizing import LimitEvent
+from ..ports.sizing import LimitEvent, Size
 from .materials import allowable_stress
 from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
 
@@ -17,9 +18,17 @@ __all__ = [
     "distance",
     "least_sections",
     "member_mass",
+    "member_sizes",
     "root_stress",
     "root_stress_of_force",
 ]
+
+RELAXED = {
+    "limit": ("requirements.limit_torque", "requirements.safety_factor"),
+    "ultimate": ("requirements.limit_torque",),
+    "buckling": ("requirements.limit_torque",),
+}
+"""What would relax each check of a section."""
 
 
 def distance(start: Point, end: Point) -> Expr:
@@ -87,6 +96,31 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
     euler = event.ultimate_factor * force / (math.pi**2 * study.material.youngs_modulus)
     return least | {"buckling": kappa_area * length * sqrt(euler)}
+
+
+def member_sizes(study: Any, design: Mapping[str, Any], event: LimitEvent) -> list[Size]:
+    """Sections of members that are design variables, with the least that strength asks of each.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping of str to Expr
+    event : LimitEvent
+
+    Returns
+    -------
+    list of Size
+        Named by their variables; members that share one are sized by the first of them.
+    """
+    declared = {variable.name: variable for variable in study.damper.variables()}
+    found: dict[str, Size] = {}
+    for member in study.damper.members(design):
+        if member.variable and member.variable not in found:
+            name, unit = member.variable, declared[member.variable].unit
+            least = least_sections(member, event, study).items()
+            limits = {f"{member.kind}_{check}": (value, RELAXED[check]) for check, value in least}
+            found[name] = Size(name, unit, design[name], limits)
+    return list(found.values())
 
 
 def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:

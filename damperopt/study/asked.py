@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ..objectives import limit_event, member_sizes
+from ..strength.limit_event import limit_event
+from ..strength.members import member_sizes
 from .variables import Variable
 
 __all__ = ["asked_sizes", "variables_left_out"]

@@ -87,7 +87,7 @@ def test_impedance_of_a_chain(configs):
     psi, rate, link = (names.index(name) for name in ("yaw_angle", "yaw_rate", "link_angle"))
     s = 70j
     Z = -(A[rate, psi] + A[rate, link] * A[link, psi] / (s - A[link, link])) * study.gear.yaw_inertia
-    assert Z == pytest.approx(K_t * (k + s * c) / (K_t + k + s * c), rel=1e-6)
+    assert pytest.approx(K_t * (k + s * c) / (K_t + k + s * c), rel=1e-6) == Z
 
 
 def test_stiffness_of_the_parts_by_hand(configs):

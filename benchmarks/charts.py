@@ -22,7 +22,7 @@ from damperopt.charts.maps import StabilityMap
 from damperopt.charts.plane import Axis, Plane
 from damperopt.charts.tracing import trace
 
-STUDY = "configs/main_gear.yaml"
+STUDY = "configs/thesis_gear.yaml"
 X, Y = ("c_lambda", 0.0, 2e5), ("I_arm", 0.0, 1e-5)
 
 

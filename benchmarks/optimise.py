@@ -2,7 +2,7 @@
 
     python benchmarks/optimise.py [--layouts boeing,utas,arreaza] [--evolution-generations 150]
 
-All methods get the same study, main_gear.yaml without its decay requirement (which only damperopt could impose), the same
+All methods get the same study, thesis_gear.yaml without its decay requirement (which only damperopt could impose), the same
 mass, strength and geometry functions (`DesignProblem`) and the same bounds. The others impose stability as users would by
 hand, as the spectral abscissa of numpy.linalg.eigvals at 40 speeds; damperopt imposes and proves it for every speed. Each
 row: wall time in one process, best mass, share of the starts that end within 0.1 % of the best mass of all, and the largest
@@ -23,7 +23,7 @@ import damperopt
 from damperopt.optimum.multistart import starting_designs
 from damperopt.optimum.problem import DesignProblem
 
-STUDY = Path(__file__).parents[1] / "configs" / "main_gear.yaml"
+STUDY = Path(__file__).parents[1] / "configs" / "thesis_gear.yaml"
 SPEEDS = np.geomspace(5, 100, 40)
 
 

@@ -30,7 +30,7 @@ from damperopt.motion.integrators import Integrator, has_compiler
 from damperopt.motion.simulate import Simulator
 from damperopt.symbols import data_values, symbolic
 
-STUDY = "configs/main_gear.yaml"
+STUDY = "configs/thesis_gear.yaml"
 DESIGN = {"c_lambda": 34803.0, "I_arm": 5.6663e-07, "L": 0.4781, "gamma": 0.53215, "b": 0.15244}
 RELEASE, SPEED, LOAD, DURATION, POINTS = math.radians(0.25), 40.0, 150e3, 0.5, 200
 SCIPY = {

@@ -50,7 +50,7 @@ def _problem(study: damperopt.Study) -> object:
 
 
 def _studies() -> Iterator[tuple[str, damperopt.Study]]:
-    main = damperopt.load(CONFIGS / "main_gear.yaml")
+    main = damperopt.load(CONFIGS / "thesis_gear.yaml")
     design = {
         "c_lambda": {"start": 15000.0, "min": 100.0, "max": 1e7},
         "k_lambda": {"start": 3.8e6, "min": 1e5, "max": 1e9},
@@ -75,7 +75,7 @@ def collect(optima: bool) -> dict[str, dict[str, list[float]]]:
     found: dict[str, dict[str, list[float]]] = {}
     for name, study in _studies():
         mine = found[name] = {}
-        design = {key: DESIGN[key] for key in study.start}
+        design = {key: DESIGN.get(key, start) for key, start in study.start.items()}
         gear = damperopt.linear_gear(study, design)
         speeds, loads = np.array([1.0, 5.0, 8.75, 40.0, 150.0]), study.envelope.loads[0]
         mine["matrices"] = gear.matrices(speeds, loads).ravel().tolist()
@@ -110,7 +110,7 @@ def collect(optima: bool) -> dict[str, dict[str, list[float]]]:
             mine["chart"] = np.concatenate([p[:: max(len(p) // 10, 1)].ravel() for p in points] or [np.zeros(0)]).tolist()
     if optima:
         for layout in LAYOUTS:
-            study = damperopt.load(CONFIGS / "main_gear.yaml").replace(damper__topology=layout, solver__starts=6)
+            study = damperopt.load(CONFIGS / "thesis_gear.yaml").replace(damper__topology=layout, solver__starts=6)
             for kind, variant in (("decay", study), ("stable", study.replace(requirements__decay=None))):
                 result = damperopt.optimise(variant)
                 mass = result.mass.total if result.mass else float("nan")

@@ -20,9 +20,15 @@ TWIN_LAWS = {"arctangent": "nonlinear", "linear": "linear", "stiffness": "straig
 """Slip laws as the basic twin calls them."""
 
 
+def damper_block(topology: str, **keys: Any) -> dict[str, Any]:
+    """Block `damper` of a study; a linkage is seen from the top and rigid, as in the thesis, unless the keys say otherwise."""
+    seen = {} if topology == "rotational" else {"geometry": "planar", "compliance": "rigid"}
+    return {"topology": topology, **seen, **keys}
+
+
 def damper_of(**block: Any) -> Any:
-    """Layout with damper and joints, of a block `damper`."""
-    return TypeAdapter(assembly_type()).validate_python(block)
+    """Layout with damper and joints, of a `damper_block`."""
+    return TypeAdapter(assembly_type()).validate_python(damper_block(**block))
 
 
 def tyre_of(**block: Any) -> Any:
@@ -42,4 +48,4 @@ def coefficients_of(damper: Any, design: Any, youngs_modulus: float) -> tuple[fl
     return float(found.torsional_stiffness), float(damping)
 
 
-__all__ = ["TWIN_LAWS", "VARIABLES", "coefficients_of", "damper_of", "gear_of", "tyre_of"]
+__all__ = ["TWIN_LAWS", "VARIABLES", "coefficients_of", "damper_block", "damper_of", "gear_of", "tyre_of"]

@@ -15,10 +15,10 @@ from .style import plain, styled
 __all__ = ["linkage"]
 
 MM = 1e3
-WIDTHS = {"link": 7.0, "support": 6.0, "damper": 5.0, "arm": 2.5}
+WIDTHS = {"link": 7.0, "support": 6.0, "hinge": 6.0, "damper": 5.0, "arm": 2.5}
 """The thinnest in front: from some side parts lie behind each other."""
 
-COLOURS = {"link": "#4a4a4a", "arm": "#0b6e99", "damper": "#c2571a", "support": "#7a5195"}
+COLOURS = {"link": "#4a4a4a", "arm": "#0b6e99", "hinge": "#3a7d44", "damper": "#c2571a", "support": "#7a5195"}
 
 
 def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
@@ -57,7 +57,7 @@ def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
             axis.set(xlabel="x, aft of the strut axis [mm]", ylabel=f"{'z, up' if across == 2 else 'y, to the side'} [mm]")
             axis.set(ylim=(middle - span / 2, middle + span / 2), xlim=(low[0] - room, high[0] + room), title=view)
             axis.set_aspect("equal", adjustable="box")
-        shown = {part.name: COLOURS[part.kind] for part in parts}
+        shown = {part.name.partition(",")[0]: COLOURS[part.kind] for part in parts}  # legs by the part they belong to
         handles = [plt.Line2D([], [], color=colour, lw=4) for colour in shown.values()]
         handles.append(plt.Line2D([], [], color="#888888", lw=1, ls="-."))
         figure.legend(handles, [*map(plain, shown), "strut axis"], loc="outside lower center", ncols=5, frameon=False)

@@ -17,7 +17,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Tag, model_validator
+from pydantic import Discriminator, GetJsonSchemaHandler, Tag, model_validator
+from pydantic_core import CoreSchema
 
 from ..expressions.calculus import Expr, sqrt
 from ..ports.linkage import Compliant, Linkage
@@ -37,6 +38,10 @@ __all__ = [
 
 TAPERED_MASS = 3 / 5
 """Mass of a cantilever of uniform stress in similar sections over that of the prismatic one with its root section."""
+
+
+WORDS = ("sized", "rigid")
+"""That stand for every part."""
 
 
 def _word_or_number(found: Any) -> str:
@@ -72,9 +77,13 @@ class Compliance(Record):
     @model_validator(mode="before")
     @classmethod
     def _one_word(cls, data: Any) -> Any:
-        if data in ("sized", "rigid"):
+        if data in WORDS:
             return dict.fromkeys(("link", "arm", "support", "damper"), data)
         return data
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"enum": list(WORDS)}, handler.resolve_ref_schema(handler(schema))]}
 
     def is_sized(self, part: str) -> bool:
         """Whether the stiffness of a part comes from its section."""

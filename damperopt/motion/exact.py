@@ -35,6 +35,9 @@ FEWEST_POINTS = 2000
 NEWTON_TOLERANCE = 1e-14
 """Step of the algebraic unknowns [m, rad] at which the linkage counts as closed."""
 
+RELAXING_STEPS = 4
+"""Until the corners agree with where the relaxed chain stands: each step is Newton's on straight pieces."""
+
 NEWTON_STEPS = 50
 
 STEPS_PER_CYCLE = 40
@@ -216,12 +219,20 @@ class _Run:
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
         self._sticks = False
-        z = np.zeros(model.unknowns)
-        given = np.array(disturbance.start(model.state_names))
-        self._x0 = model.relaxed(given, z, self._modes, self._point)[0].copy()
-        self._z = model.first_guess(self._x0, z, self._modes, self._point)[0].copy()
+        self._z = np.zeros(model.unknowns)
+        self._x0 = self._relaxed(np.array(disturbance.start(model.state_names)))
+        self._z = model.first_guess(self._x0, self._z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
+
+    def _relaxed(self, given: np.ndarray) -> np.ndarray:
+        """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""
+        x = given
+        for _ in range(RELAXING_STEPS):
+            arguments = self._model.motion(x, self._z, self._modes, self._point)[2]
+            self._modes[:-1] = np.where(arguments < 0, -1.0, 1.0)
+            x = self._model.relaxed(given, self._z, self._modes, self._point)[0].copy()
+        return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
         """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""

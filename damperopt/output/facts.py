@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from ..results import DesignResult
 from ..stability.critical import CriticalSpeed, critical_speeds
 from ..stability.linear import LinearGear
 from ..stability.modes import ModeTable
-from ..strength.cylinder import bore, rod_diameters, rod_length
+from ..strength.cylinder import bore, piston_area, rod_diameters, rod_length
 from ..strength.materials import allowable_stress
-from ..strength.members import distance, root_stress
+from ..strength.members import allowables, distance, least_sections, root_stress
 from ..strength.sections import area_for_modulus, fibre_distance, shape_numbers
 from ..study.study import Study
 
@@ -110,16 +110,19 @@ def sizes(study: Study, result: DesignResult) -> list[Size]:
     Returns
     -------
     list of Size
-        Tapered links and supports at their root, which is sized to its allowable stress exactly.
+        Tapered links and supports at their root; without a size of their own it meets its allowable stress exactly. Members
+        that share a size are shown once, by the first, which is stressed most.
     """
     event = _event(study, result)
     if event is None:
         return []
+    members = [member for member in study.damper.members(result.design) if member.section]
+    chosen = {member.variable: member for member in reversed(members) if member.variable}
     found: list[Size] = []
-    for member in study.damper.members(result.design):
-        if member.section:
+    for member in members:
+        if not member.variable or chosen[member.variable] is member:
             found += _member(study, member, event)
-    return found + _cylinder(study, event, result.derived.get("rod_diameter"))
+    return found + _cylinder(study, event, result.derived | result.design)
 
 
 def _event(study: Study, result: DesignResult) -> LimitEvent | None:
@@ -144,15 +147,9 @@ def _event(study: Study, result: DesignResult) -> LimitEvent | None:
 
 
 def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
-    """Height and wall of the section of a member; at its root, if it is a cantilever that its load sizes."""
+    """Height and wall of the section of a member: of a leg, of an arm, or at the root of a cantilever."""
     section = getattr(study.mass, member.section)
-    allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
-    if member.inertia is None:
-        length = distance(member.start, member.end) if member.length is None else member.length
-        area = area_for_modulus(section, getattr(event, member.load) * length / allowable)
-        part, inertia, margin = f"{member.name}, root", (area / shape_numbers(section)[0]) ** 2, 0.0
-    else:
-        part, inertia, margin = member.name, member.inertia, allowable / root_stress(member, event, study) - 1
+    part, inertia, margin = _section(study, member, event)
     height = 2 * fibre_distance(section, inertia)
     words = "outer diameter" if section.family in ("tube", "solid_round") else "height of the section"
     found = [Size(part, words, float(height), "m", float(margin))]
@@ -161,14 +158,39 @@ def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
     return found
 
 
-def _cylinder(study: Study, event: LimitEvent, rod: float | None) -> list[Size]:
+def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, float, float]:
+    """What a section is of, its second moment of area [m^4], and the least margin of safety."""
+    kappa_area, _ = shape_numbers(getattr(study.mass, member.section))
+    if member.variable:
+        least = least_sections(member, event, study)
+        if member.area is not None:  # Euler's load grows with the square of the area
+            ratios = {check: (member.area / value) ** (2 if check == "buckling" else 1) for check, value in least.items()}
+            return f"{member.part}, each leg", (member.area / kappa_area) ** 2, min(ratios.values()) - 1
+        # the section modulus grows with I^(3/4)
+        return f"{member.part}, root", member.inertia, min((member.inertia / value) ** 0.75 for value in least.values()) - 1
+    if member.inertia is not None:
+        allowed = allowables(study.material, event) if study.damper.has_sized_parts() else {}
+        stress = min(
+            allowed.values(),
+            default=allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor),
+        )
+        return member.name, member.inertia, stress / root_stress(member, event, study) - 1
+    length = distance(member.start, member.end) if member.length is None else member.length
+    allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
+    area = area_for_modulus(getattr(study.mass, member.section), getattr(event, member.load) * length / allowable)
+    return f"{member.name}, root", (area / kappa_area) ** 2, 0.0
+
+
+def _cylinder(study: Study, event: LimitEvent, chosen: Mapping[str, float]) -> list[Size]:
     """Rod against yield (its area) and buckling (its second moment), cylinder against the working pressure."""
+    rod, model = chosen.get("rod_diameter"), study.mass
     if rod is None:
         return []
-    model = study.mass
+    area, stroke = chosen.get("A_piston", piston_area(event, model)), chosen.get("s_damper", event.stroke)
     sigma = allowable_stress(model.damper_material, study.required.limit_factor, study.required.ultimate_factor)
+    event = replace(event, stroke=stroke)
     least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}
-    diameter = float(bore(event, model, rod))
+    diameter = float(bore(area, rod))
     needed = model.working_pressure * diameter / (2 * sigma)
     wall = model.wall_allowance + needed  # as `cylinder_mass` reckons it
     return [
@@ -176,6 +198,7 @@ def _cylinder(study: Study, event: LimitEvent, rod: float | None) -> list[Size]:
         Size("damper rod", "diameter, against buckling", rod, "m", (rod / least["rod_buckling"]) ** 4 - 1),
         Size("damper cylinder", "bore", diameter, "m"),
         Size("damper cylinder", "wall", wall, "m", wall / needed - 1),
+        Size("damper cylinder", "stroke to one side", float(stroke), "m"),
         Size("damper cylinder", "length of cylinder and rod", float(rod_length(event, model)), "m"),
-        Size("damper cylinder", "peak pressure", model.working_pressure, "Pa"),
+        Size("damper cylinder", "peak pressure", float(event.damper_force / area), "Pa"),
     ]

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
+from ..linkages.elastic import elastic_linkage
 from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
 from ..motion.trajectory import Trajectory
@@ -114,8 +115,9 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
-    in_series = study.damper.links(result.design), study.damper.series(result.design)
-    least = 0.0 if in_series == (None, None) else c / 100  # without damping a node in series has no equation
+    chain = elastic_linkage(study, result.design)
+    rigid = chain.links is None and chain.series is None
+    least = 0.0 if rigid else c / 100  # without damping a node in series has no equation
     return chart(
         study,
         (damping, least, 2.5 * c),

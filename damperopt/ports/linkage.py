@@ -144,7 +144,7 @@ class Member:
     part : str
         Part of the mass table that it counts to; empty: it is not weighed here (a damper weighs itself).
     kind : str
-        ``link``, ``arm``, ``support`` or ``damper``: how it is drawn.
+        ``link``, ``arm``, ``hinge``, ``support`` or ``damper``: how it is drawn.
     start, end : Point
         [m], at rest.
     section : str

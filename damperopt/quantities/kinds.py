@@ -5,12 +5,14 @@ from __future__ import annotations
 import pkgutil
 import reprlib
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, Union, get_args, get_origin
 
-from pydantic import BeforeValidator, Discriminator, Tag
+from pydantic import BeforeValidator, Discriminator, GetJsonSchemaHandler, Tag
+from pydantic_core import CoreSchema
 
 from ..errors import ConfigError
 from .record import Record, refuse
@@ -156,6 +158,17 @@ def union_of(classes: Mapping[str, type[Record]], tags: tuple[str, ...], rewrite
         return f"<{named(data)}>" if named(data) in classes else None
 
     options = tuple(Annotated[kind, Tag(f"<{name}>")] for name, kind in classes.items())
+    more = (BeforeValidator(prepared), *([_TagAlone(tuple(classes))] if short else []))
     if len(options) == 1:
-        return Annotated[options[0], BeforeValidator(prepared)]
-    return Annotated[Union[options], Discriminator(chosen), BeforeValidator(prepared)]  # noqa: UP007  # built at run time
+        return Annotated[options[0], *more]
+    return Annotated[Union[options], Discriminator(chosen), *more]  # noqa: UP007  # built at run time
+
+
+@dataclass(frozen=True)
+class _TagAlone:
+    """JSON Schema of a block that its tag alone may stand for."""
+
+    names: tuple[str, ...]
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"enum": list(self.names)}, handler(schema)]}

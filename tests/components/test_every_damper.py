@@ -1,5 +1,7 @@
 """Every kind of damper, with the first layout that it goes with."""
 
+import itertools
+
 import numpy as np
 import pytest
 import standard
@@ -9,6 +11,7 @@ from whole import goes_through_the_commands, is_optimised, is_reported
 from damperopt.dampers.base import Context
 from damperopt.expressions.corners import Linear, Smooth
 from damperopt.linkages.assembly import assemblies
+from damperopt.linkages.elastic import elastic_linkage
 from damperopt.strength.limit_event import limit_event
 from damperopt.study.components import rooms
 
@@ -24,10 +27,14 @@ def home_of(kind):
 
 
 def damper_blocks():
+    """Every damper in a rigid chain and in an elastic one; in full with its own compliance as a number."""
     for tag, kind in KINDS.items():
         home = home_of(kind) | {"kind": tag}
-        for i, block in enumerate(standard.blocks(kind, lambda block, home=home: standard.takes(damper=home | block))):
-            yield pytest.param(home | block, id=f"{tag}{' full' * i}")
+        found = standard.blocks(kind, lambda block, home=home: standard.takes(damper=home | block))
+        chains = ("",) if kind.ROTARY else ("rigid", "sized")
+        for (i, block), chain in itertools.product(enumerate(found), chains):
+            compliance = {"compliance": chain} if chain else {}
+            yield pytest.param(home | compliance | block, id=" ".join(filter(None, (tag, chain, "full" * i))))
 
 
 @pytest.fixture(scope="module", params=damper_blocks())
@@ -49,6 +56,8 @@ def test_equations(study):
     standard.mirrored_motions_are_motions(study)
     standard.smooth_goes_to_exact(study)
     standard.declared_powers_are_kept_exactly(study)
+    standard.states_of_the_chain(study)
+    standard.energy_is_kept(study)
     standard.record_survives(study)
 
 
@@ -93,21 +102,23 @@ def test_parts_weigh(study):
     """Masses are positive and grow with the loads of the limit event; sizes start between their bounds."""
     if not study.variables:
         return
-    damper, link = study.damper, study.damper.linkage(study.start, study.material.youngs_modulus)
+    damper, link = study.damper, elastic_linkage(study, study.start)
     event = limit_event(study, link, study.start, max(study.envelope.loads))
     sized = damper.parts(event, study.mass)
     if sized is None:
         return
-    sizes = {size.name: size for size in sized.sizes}
-    for size in sizes.values():
+    own = [size for size in sized.sizes if size.name not in study.start]
+    for size in own:
         assert 0 < size.lower < size.start < size.upper
+    for size in sized.sizes:
+        assert size in own or size.symbol == study.start[size.name], "a design variable stands for itself"
         assert size.least
         for value, relaxed in size.least.values():
             assert float(value) > 0
             assert relaxed, "a limit that nothing relaxes"
     for mass in sized.masses.values():
-        assert float(standard.with_sizes(mass, sized.sizes)) > 0
-        assert np.isfinite(float(standard.with_sizes(mass, sized.sizes)))
+        assert float(standard.with_sizes(mass, own)) > 0
+        assert np.isfinite(float(standard.with_sizes(mass, own)))
 
 
 def test_says_what_it_leaves_out(study):

@@ -3,6 +3,7 @@
 import math
 
 import casadi as ca
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import standard
@@ -10,24 +11,43 @@ from scipy.optimize import root
 from standard import least
 from whole import goes_through_the_commands, is_optimised, is_reported
 
+from damperopt.figures.linkage import linkage
 from damperopt.linkages.assembly import assemblies
+from damperopt.linkages.elastic import elastic_linkage
 from damperopt.linkages.spatial import FORESHORTENING
 from damperopt.study.components import rooms
 
 KINDS = rooms()["linkages"]
 GEOMETRIES = ("published", "planar", "spatial")
 ANGLES = (-0.15, -0.02, 0.04, 0.2)
+DEFLECTIONS = (-0.02, 0.01)
+"""Of the coordinate of a linkage behind elastic links [rad] or [m]."""
+
 CLOSES = 1e-12
 """[m]; links of 0.6 m, a loop solved to rounding."""
 
 
 def layout_blocks():
+    """Every layout rigid in every geometry, and elastic by its sections; in full with the other forms of its parts."""
     for tag, kind in KINDS.items():
         damper = next(made.KIND for made in assemblies().values() if made.LAYOUT is kind and _usual(made))
         more = standard.example(damper)
+        found = standard.blocks(kind, lambda block, more=more: standard.takes(damper=more | block))
         for geometry in GEOMETRIES[1:2] if kind.ROTARY else GEOMETRIES:
-            for i, block in enumerate(standard.blocks(kind, lambda block, more=more: standard.takes(damper=more | block))):
-                yield pytest.param(more | block | {"geometry": geometry}, id=f"{tag} {geometry}{' full' * i}")
+            if kind.ROTARY:
+                yield from (pytest.param(more | block, id=f"{tag}{' full' * i}") for i, block in enumerate(found))
+                continue
+            chain = more | {"geometry": geometry}
+            yield pytest.param(chain | found[0] | {"compliance": "rigid"}, id=f"{tag} {geometry} rigid")
+            for i, block in enumerate(found):
+                yield pytest.param(chain | block | {"compliance": "sized"}, id=f"{tag} {geometry} sized{' full' * i}")
+
+
+def designs():
+    """Cases to go through the commands: the thesis' model and the default one."""
+    models = {("planar", "rigid"), ("spatial", "sized"), (None, None)}
+    found = [(case, case.values[0]) for case in layout_blocks()]
+    return [case for case, block in found if (block.get("geometry"), block.get("compliance")) in models]
 
 
 def _usual(made):
@@ -64,7 +84,25 @@ def test_equations(study):
     standard.mirrored_motions_are_motions(study)
     standard.smooth_goes_to_exact(study)
     standard.declared_powers_are_kept_exactly(study)
+    standard.states_of_the_chain(study)
+    standard.energy_is_kept(study)
     standard.record_survives(study)
+
+
+def test_compliance_is_that_of_the_sections_that_are_sized(study):
+    """Sizes are design variables where the chain is elastic, and its stiffness grows with each of them."""
+    damper, link = study.damper, elastic_linkage(study, study.start)
+    sizes = {variable.name for variable in study.variables} - {variable.name for variable in damper.VARIABLES}
+    assert bool(sizes) == damper.has_sized_parts()
+    if not sizes:
+        assert (link.links, link.series) == (None, None)
+        return
+    rest = 1 / link.links + 1 / link.series
+    softer = {name: elastic_linkage(study, study.start | {name: study.start[name] / 2}) for name in sizes - {"s_damper"}}
+    for name, made in softer.items():
+        assert 1 / made.links + 1 / made.series > rest, name
+    shared = {member.variable for member in damper.members(study.start)} - {""}
+    assert shared <= sizes, "a member hangs on what is no design variable"
 
 
 def test_linkage_in_floats_is_its_graph(study):
@@ -81,8 +119,15 @@ def test_linkage_in_floats_is_its_graph(study):
         more = [] if rest else [link.at(psi) for psi in ANGLES]
         positions = [(p.deflection, p.spring_lever, p.stroke, p.damper_lever) for p in more]
         levers = link.stiffness, link.spring_lever, link.damper_lever, link.reach, link.torsional_stiffness
-        members = [(m.start, m.end, *(v for v in (m.length, m.inertia) if v is not None)) for m in study.damper.members(design)]
-        return levers, lengths, printed, positions, members, list(link.rest)
+        members = [
+            (m.start, m.end, m.share, *(v for v in (m.length, m.inertia, m.area) if v is not None))
+            for m in study.damper.members(design)
+        ]
+        elastic = elastic_linkage(study, design)
+        chain = [value for value in (elastic.links, elastic.series) if value is not None]
+        along = [link.along(eps) for eps in DEFLECTIONS]
+        path = [(p.angle, p.angle_slope, p.stroke, p.stroke_slope) for p in along]
+        return levers, lengths, printed, positions, members, list(link.rest), chain, path
 
     start = np.array(list(study.start.values()))
     standard.agrees_with_its_graph(numbers, start, 1.1 * start)
@@ -156,6 +201,24 @@ def test_planar_levers_are_those_of_the_members_from_the_top(study):
         assert float(link.damper_length) == pytest.approx(math.hypot(x, y), rel=1e-12)
 
 
+def test_members_are_drawn_from_end_to_end(study):
+    """In both views, and each part once in the legend."""
+    members = study.damper.members(study.start)
+    if not members:
+        return
+    drawn = linkage(study.damper, study.start)
+    for axis, across in zip(drawn.axes, (2, 1), strict=True):
+        lines = [np.round(line.get_xydata(), 9).tolist() for line in axis.lines]
+        for member in members:
+            ends = [[1e3 * float(point[0]), 1e3 * float(point[across])] for point in (member.start, member.end)]
+            assert np.round(ends, 9).tolist() in lines, f"{member.name} is not drawn"
+    (legend,) = drawn.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert len(set(words)) == len(words)
+    assert all(any(member.name.startswith(word) for word in words) for member in members)
+    plt.close(drawn)
+
+
 def link_apex(link):
     return float(link.reach), 0.0, 0.0
 
@@ -170,12 +233,15 @@ def test_moved_members_have_the_lengths_of_the_loop(study, psi):
         return  # a loop with unknowns of its own, which only its literature test knows
     q, z = moved.named["apex_reach"], moved.named["apex_height"]
     apex = q * math.cos(psi), q * math.sin(psi), z
-    lower = next(member for member in members if member.kind == "link" and float(member.start[2]) < 0)
-    assert distance(lower.start, apex) == pytest.approx(float(lower.length), abs=CLOSES)
-    upper = next(member for member in members if member.kind in ("link", "arm") and float(member.start[2]) > 0)
-    length, eps = distance(upper.start, upper.end), moved.deflection
-    along = length - FORESHORTENING * eps**2 / length if upper.kind == "arm" else length
-    assert distance(upper.start, apex) == pytest.approx(math.hypot(along, eps), abs=CLOSES)
+    for lower in (member for member in members if member.kind == "link" and float(member.start[2]) < 0):
+        x, y, height = map(float, lower.start)  # of a leg: beside the axis, with which it turns
+        turned = x * math.cos(psi) - y * math.sin(psi), x * math.sin(psi) + y * math.cos(psi), height
+        assert distance(turned, apex) == pytest.approx(float(lower.length), abs=CLOSES)
+    uppers = [member for member in members if member.kind in ("link", "arm") and float(member.start[2]) > 0]
+    hinge = np.mean([[float(value) for value in member.start] for member in uppers], axis=0)  # between legs
+    length, eps = distance(hinge, uppers[0].end), moved.deflection
+    along = length - FORESHORTENING * eps**2 / length if uppers[0].kind == "arm" else length
+    assert distance(hinge, apex) == pytest.approx(math.hypot(along, eps), abs=CLOSES)
     strut = one(members, "damper")
     if distance(strut.end, link_apex(moved.link)) < CLOSES:
         assert distance(strut.start, apex) - distance(strut.start, strut.end) == pytest.approx(moved.stroke, abs=CLOSES)
@@ -183,10 +249,12 @@ def test_moved_members_have_the_lengths_of_the_loop(study, psi):
         assert moved.stroke == pytest.approx(eps, abs=CLOSES)
 
 
+@pytest.mark.parametrize("study", designs(), indirect=True)
 def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+@pytest.mark.parametrize("study", designs(), indirect=True)
 def test_is_optimised(study, tmp_path):
     is_optimised(study, tmp_path)
 

@@ -16,7 +16,7 @@ from basic_twin import (
     spectral_abscissa,
     state_matrix,
 )
-from components_of import coefficients_of, damper_of
+from components_of import coefficients_of, damper_block, damper_of
 from scipy.optimize import brentq
 from tolerances import CRITICAL_DAMPING, ROUNDING, printed
 
@@ -39,7 +39,7 @@ def gear(main_gear):
     """Linear gear of a layout with E of the thesis."""
 
     def build(topology, geometry="published", design=DESIGN, **changes):
-        study = main_gear.replace(damper={"topology": topology, "geometry": geometry}, material=STEEL, **changes)
+        study = main_gear.replace(damper=damper_block(topology, geometry=geometry), material=STEEL, **changes)
         model = LinearModel(study)
         return model.at({name: design[name] for name in model.design_names})
 

@@ -12,6 +12,7 @@ fifth-order gear then needs up to 3.2 times the damping of the third-order one.
 import numpy as np
 import pytest
 from basic_twin import E_STEEL, LAYOUT, parameters, planar_coefficients, published_coefficients, spectral_abscissa, state_matrix
+from components_of import damper_block
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from tolerances import (
@@ -50,7 +51,7 @@ class Gear:
         self._study, self._models, self._simulators, self._motions = study, {}, {}, {}
 
     def study(self, topology, geometry, order=5):
-        return self._study.replace(damper={"topology": topology, "geometry": geometry}, material=STEEL, gear__order=order)
+        return self._study.replace(damper=damper_block(topology, geometry=geometry), material=STEEL, gear__order=order)
 
     def abscissa(self, topology, geometry, V, c_lambda, order=5, **changes):
         return spectral_abscissa(self._matrix(topology, geometry, V, c_lambda, order, **changes))

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from basic_twin import LAYOUT, parameters, published_coefficients, side_force, state_matrix
+from components_of import damper_block
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 from tolerances import CHARACTERISTIC_POLYNOMIAL, QUADRATURE, ROUNDING
@@ -489,7 +490,7 @@ def topology(request):
 def published(main_gear, topology):
     """The package's gear with the thesis' geometry; c_delta = 0 where the thesis leaves it out."""
     study = main_gear.replace(
-        damper={"topology": topology, "geometry": "published"},
+        damper=damper_block(topology, geometry="published"),
         material={"youngs_modulus": 207e9, "density": 7850.0, "yield_strength": 1e9},
         gear__lateral__damping=300.0 if topology == "arreaza" else 0.0,
     )

@@ -9,6 +9,7 @@ limit cycle is then where the linear gear with N k_psi and N c_psi has a spectra
 import numpy as np
 import pytest
 from basic_twin import LAYOUT, parameters, spectral_abscissa, state_matrix
+from components_of import damper_block
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from tolerances import DESCRIBED_AMPLITUDE, DESCRIBED_FREQUENCY, GAP_PROPORTION, QUADRATURE, SAME_CYCLE, printed
@@ -110,7 +111,7 @@ def described(gap):
 @pytest.fixture
 def with_gap(main_gear):
     def study(gap, smoothing=1e-3):
-        return main_gear.replace(gear__order=3, damper={"topology": "boeing", "freeplay": {"gap": gap, "smoothing": smoothing}})
+        return main_gear.replace(gear__order=3, damper=damper_block("boeing", freeplay={"gap": gap, "smoothing": smoothing}))
 
     return study
 
@@ -136,13 +137,13 @@ def test_describing_function_is_the_first_harmonic_of_a_dead_band():
 
 
 def test_the_gear_is_stable_without_a_gap_and_unstable_without_its_damper(main_gear):
-    study = main_gear.replace(gear__order=3, damper={"topology": "boeing"})
+    study = main_gear.replace(gear__order=3, damper=damper_block("boeing"))
     assert damperopt.linear_gear(study, DESIGN).abscissa(SPEED, LOAD)[0] < -3.0
     assert damperopt.linear_gear(study, DESIGN | {"c_lambda": 1.0}).abscissa(SPEED, LOAD)[0] > 1.0
 
 
 def test_without_a_gap_the_gear_comes_to_rest(main_gear):
-    study = main_gear.replace(gear__order=3, damper={"topology": "boeing"})
+    study = main_gear.replace(gear__order=3, damper=damper_block("boeing"))
     motion = Simulator(study, DESIGN, "cvodes", 1e-8)(SPEED, LOAD, {"release": {"yaw_angle": 0.005}}, 3.0)
     assert motion_of(motion).kind == "settled"
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from basic_twin import parameters, spectral_abscissa, state_matrix
+from components_of import damper_block
 from random_gears import random_gear, rotational
 from tolerances import ON_THE_CURVE
 
@@ -84,10 +85,10 @@ def test_third_order_gear_lies_on_the_closed_form(main_gear):
 JOINTS = [
     ({"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}, "damper.torsional_damping", 3e3,
      "damper.torsional_stiffness", 3e6),
-    ({"topology": "boeing"}, "c_lambda", 3e4, "k_lambda", 1e7),
-    ({"topology": "utas", "geometry": "spatial"}, "c_lambda", 1.2e5, "I_arm", 1e-5),
-    ({"topology": "arreaza", "geometry": "spatial"}, "c_lambda", 4e4, "I_arm", 1e-5),
-    ({"topology": "boeing", "series_stiffness": 3e7}, "gear.lateral.damping", 1e4, "gear.lateral.stiffness", 2e7),
+    (damper_block("boeing"), "c_lambda", 3e4, "k_lambda", 1e7),
+    (damper_block("utas", geometry="spatial"), "c_lambda", 1.2e5, "I_arm", 1e-5),
+    (damper_block("arreaza", geometry="spatial"), "c_lambda", 4e4, "I_arm", 1e-5),
+    (damper_block("boeing", series_stiffness=3e7), "gear.lateral.damping", 1e4, "gear.lateral.stiffness", 2e7),
 ]  # fmt: skip
 
 
@@ -180,7 +181,7 @@ def test_families_and_design(main_gear):
 @pytest.mark.parametrize("geometry", ["published", "planar", "spatial"])
 @pytest.mark.parametrize("topology", ["boeing", "utas", "arreaza"])
 def test_every_layout_and_geometry_has_a_chart(main_gear, topology, geometry):
-    study = main_gear.replace(damper={"topology": topology, "geometry": geometry})
+    study = main_gear.replace(damper=damper_block(topology, geometry=geometry))
     found = damperopt.chart(study, ("c_lambda", 0.0, 2e5), ("L", 0.3, 1.2), speed=40.0)
     rng = np.random.default_rng(1)
     x, y = 2e5 * rng.random(300), 0.3 + 0.9 * rng.random(300)

@@ -14,7 +14,7 @@ from basic_twin import (
     right_hand_side,
     state_matrix,
 )
-from components_of import TWIN_LAWS, gear_of
+from components_of import TWIN_LAWS, damper_block, gear_of
 from tolerances import CENTRAL_DIFFERENCE, CENTRAL_DIFFERENCE_STEP, ROUNDING, SAME_EQUATIONS
 
 from damperopt import dynamics
@@ -60,12 +60,12 @@ TYRES = {
 
 DAMPERS = {
     "rotational": {"topology": "rotational", "torsional_stiffness": 3.8e5, "torsional_damping": 300.0},
-    "boeing": {"topology": "boeing"},
-    "utas": {"topology": "utas"},
-    "arreaza": {"topology": "arreaza"},
-    "published boeing": {"topology": "boeing", "geometry": "published"},
-    "published utas": {"topology": "utas", "geometry": "published"},
-    "published arreaza": {"topology": "arreaza", "geometry": "published"},
+    "boeing": damper_block("boeing"),
+    "utas": damper_block("utas"),
+    "arreaza": damper_block("arreaza"),
+    "published boeing": damper_block("boeing", geometry="published"),
+    "published utas": damper_block("utas", geometry="published"),
+    "published arreaza": damper_block("arreaza", geometry="published"),
 }
 
 COMBINATIONS = [("rotational", tyre) for tyre in TYRES] + [

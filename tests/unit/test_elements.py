@@ -1,10 +1,12 @@
 """Corners and compliances: elements against piecewise formulas, linear dampers against springs and dashpots in series."""
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 import pytest
 from basic_twin import LAYOUT, parameters, spectral_abscissa, state_matrix
-from components_of import damper_of
+from components_of import damper_block, damper_of
 from tolerances import (
     CENTRAL_DIFFERENCE,
     CENTRAL_DIFFERENCE_STEP,
@@ -161,7 +163,8 @@ def torque_of(elements=None, **joints):
     """Torque as a function (psi, psi', own states) of a rigid linkage with these joints."""
     psi, rate = ca.SX.sym("psi"), ca.SX.sym("rate")
     damper, design = damper_of(topology="boeing", **joints), {"c_lambda": C}
-    made = damper_torque(damper, straight(), design, elements or Smooth(), Attachment(psi, rate), Context())
+    link = replace(straight(), series=damper.series(design))
+    made = damper_torque(damper, link, design, elements or Smooth(), Attachment(psi, rate), Context())
     states = ca.vertcat(ca.SX(0, 1), *made.states.values())
     outputs = [made.torque, ca.vertcat(ca.SX(0, 1), *made.rates.values()), made.outputs["damper_force"]]
     return ca.Function("torque", [psi, rate, states], outputs)
@@ -234,7 +237,7 @@ def matrix(main_gear):
     def of(topology="boeing", design=None, tyre=None, **joints):
         study = main_gear.replace(
             gear__order=3,
-            damper={"topology": topology, **joints},
+            damper=damper_block(topology, **joints),
             requirements__limit_torque=1e4,
             **({"tyre": tyre} if tyre else {}),
         )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from basic_twin import LAYOUT
-from components_of import VARIABLES
+from components_of import VARIABLES, damper_block
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from tolerances import CONVERGED, ENERGY, EVENT_MOTION, FIRST_ORDER, INTEGRATED
@@ -136,7 +136,7 @@ def test_work_of_friction_is_the_energy_that_is_missing(study):
 
 
 def free_spring(study, topology="boeing", geometry="planar", **joints):
-    return study({"topology": topology, "geometry": geometry, **joints})
+    return study(damper_block(topology, geometry=geometry, **joints))
 
 
 def boeing_energy(found, gap=0.0, stroke=np.inf, contact=0.0):
@@ -268,7 +268,7 @@ def errors_over_widths(study, damper, joints, interval=0.1, **changes):
 @pytest.mark.parametrize("name", ROUNDED)
 def test_smooth_version_converges_to_the_exact_one(study, name, interpreted):
     """At least to first order in the width: every element alone and in series with each compliance."""
-    errors = errors_over_widths(study, {"topology": "boeing"}, ROUNDED[name])
+    errors = errors_over_widths(study, damper_block("boeing"), ROUNDED[name])
     assert of_first_order(errors), errors
 
 
@@ -276,7 +276,7 @@ def test_smooth_version_converges_to_the_exact_one(study, name, interpreted):
 @pytest.mark.parametrize("geometry", ["planar", "spatial"])
 @pytest.mark.parametrize("name", ROUNDED)
 def test_smooth_version_converges_to_the_exact_one_for_an_asymmetric_layout(study, name, geometry, interpreted):
-    errors = errors_over_widths(study, {"topology": "utas", "geometry": geometry}, ROUNDED[name])
+    errors = errors_over_widths(study, damper_block("utas", geometry=geometry), ROUNDED[name])
     assert of_first_order(errors), errors
 
 
@@ -284,8 +284,27 @@ def test_smooth_version_converges_to_the_exact_one_for_an_asymmetric_layout(stud
 @pytest.mark.parametrize("topology", ["boeing", "utas", "arreaza"])
 @pytest.mark.parametrize("geometry", ["planar", "spatial"])
 def test_smooth_version_with_everything_converges_to_the_exact_one(study, topology, geometry, interpreted):
-    errors = errors_over_widths(study, {"topology": topology, "geometry": geometry}, EVERYTHING, 0.1)
+    errors = errors_over_widths(study, damper_block(topology, geometry=geometry), EVERYTHING, 0.1)
     assert of_first_order(errors), errors
+
+
+@pytest.mark.parametrize("yaw", [0.1, -0.1, 0.02, 0.004])
+def test_released_chain_starts_where_its_damper_carries_nothing(study, yaw):
+    """Beyond gap and stop, beyond the gap alone, and inside it: links, spring and stop in equilibrium, found by bisection."""
+    k_t, k_stop, gap, stroke = 2e7, 3e7, 0.002, 0.01
+    joints = {"freeplay": {"gap": gap}, "end_stop": {"stroke": stroke, "stiffness": k_stop}, "link_stiffness": k_t}
+
+    def held(u):
+        twist, s = abs(yaw) - u, ELL * np.sin(u)
+        spring = DESIGN["k_lambda"] * s + k_stop * max(s - stroke, 0.0)
+        return k_t * ELL**2 * max(twist - gap / ELL, 0.0) - spring * ELL * np.cos(u)
+
+    expected = np.sign(yaw) * brentq(held, 0.0, abs(yaw), xtol=1e-15)
+    for more in ({}, {"series_stiffness": 2e7}):
+        gear, release = study(damper_block("boeing", **joints, **more)), {"release": {"yaw_angle": yaw}}
+        found = ExactSimulator(gear, design_of("boeing"))(SPEED, LOAD, release, 0.001, points=3)
+        assert found["link_angle"][0] == pytest.approx(expected, rel=1e-12, abs=1e-15)
+        assert abs(found["damper_force"][0]) < 1e-6
 
 
 @pytest.mark.parametrize("geometry", ["planar", pytest.param("spatial", marks=pytest.mark.slow)])
@@ -293,7 +312,7 @@ def test_smooth_friction_converges_to_the_exact_one(study, geometry, interpreted
     """While it moves: where the exact one sticks, the smooth one creeps."""
     design, duration = design_of("utas", c_lambda=1e3), 0.1
     gears = [
-        study({"topology": "utas", "geometry": geometry}, gear__friction={"torque": 2e3, "smoothing": width})
+        study(damper_block("utas", geometry=geometry), gear__friction={"torque": 2e3, "smoothing": width})
         for width in (1e-1, 1e-2, 1e-3)
     ]
     exact = ExactSimulator(gears[0], design)(SPEED, LOAD, KICK, duration, points=2001)
@@ -322,7 +341,7 @@ def test_slip_limit_is_an_event(main_gear, interpreted):
 )
 def test_exact_motion_of_an_orifice_goes_on_after_its_corner(study, joints):
     """The damper turns round, or is at rest inside the gap."""
-    found = ExactSimulator(study({"topology": "boeing", **joints}), design_of("boeing", c_lambda=1e3))(
+    found = ExactSimulator(study(damper_block("boeing", **joints)), design_of("boeing", c_lambda=1e3))(
         SPEED, LOAD, KICK, 0.15, points=100
     )
     assert (found.status, found.message) == ("completed", "")

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from basic_twin import E_STEEL, LAYOUT, parameters, planar_coefficients, planar_torque, right_hand_side, state_matrix
-from components_of import VARIABLES
+from components_of import VARIABLES, damper_block
 from scipy.integrate import solve_ivp
 from tolerances import INTERPOLATED_DECAY, LINEAR_RESPONSE, ROUNDING, SAME_MOTION, SENSITIVITY
 
@@ -27,8 +27,8 @@ RELEASE = {"release": {"yaw_angle": 0.08, "bending_angle": -0.002, "string_defle
 START = [0.08, 0.0, -0.002, 0.0, 0.01]
 DAMPERS = {
     "rotational": {"topology": "rotational", "torsional_stiffness": 3.8e5, "torsional_damping": 300.0},
-    "boeing": {"topology": "boeing"},
-    "utas": {"topology": "utas"},
+    "boeing": damper_block("boeing"),
+    "utas": damper_block("utas"),
 }
 
 
@@ -156,7 +156,7 @@ def test_sensitivities_are_differences_of_solutions_of_the_twin(study, topology,
 @pytest.mark.parametrize("engine", [pytest.param("cvodes", marks=pytest.mark.slow), "idas"])
 def test_sensitivities_of_the_spatial_linkage_are_differences_of_its_motions(study, engine):
     """Both engines, so that the unknowns are eliminated in one case and integrated in the other."""
-    gear = study({"topology": "utas", "geometry": "spatial"})
+    gear = study(damper_block("utas", geometry="spatial"))
     dae = build(symbolic(gear), Smooth())
     design = np.array([DESIGN[name] for name in dae.design_names])
     made = Integrator(dae, data_values(gear), 10, engine, 1e-10, sensitivities=True, compiled=False)
@@ -286,7 +286,7 @@ def test_start_beyond_the_slip_range_is_refused(study, interpreted, simulate_):
 
 @pytest.mark.parametrize("simulate_", [simulate, simulate_exactly])
 def test_start_beyond_the_stop_is_refused(study, interpreted, simulate_):
-    stopped = study({"topology": "boeing", "end_stop": {"stroke": "5 mm"}})
+    stopped = study(damper_block("boeing", end_stop={"stroke": "5 mm"}))
     with pytest.raises(ConfigError, match="stop"):
         simulate_(stopped, speed=SPEED, disturbance={"release": {"yaw_angle": 0.1}}, duration=0.1)
 
@@ -308,7 +308,7 @@ def test_motion_stops_at_the_slip_range(study, interpreted, simulate_):
 
 @pytest.mark.parametrize("simulate_", [simulate, simulate_exactly])
 def test_motion_ends_at_a_stop_without_stiffness(study, interpreted, simulate_):
-    gear = study({"topology": "boeing", "end_stop": {"stroke": "20 mm"}})
+    gear = study(damper_block("boeing", end_stop={"stroke": "20 mm"}))
     found = simulate_(gear, design_of("boeing"), speed=SPEED, disturbance={"kick": {"yaw_rate": 12.0}}, duration=0.5)
     assert found.status == "stopped"
     assert "stop at 20 mm" in found.message

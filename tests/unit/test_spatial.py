@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from basic_twin import E_STEEL, LAYOUT, parameters, right_hand_side, spectral_abscissa, state_matrix
-from components_of import coefficients_of, damper_of
+from components_of import coefficients_of, damper_block, damper_of
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import root
 from tolerances import (
@@ -47,7 +47,7 @@ def study(main_gear):
 
     def change(layout, **changes):
         return main_gear.replace(
-            damper={"topology": layout, "geometry": "spatial"},
+            damper=damper_block(layout, geometry="spatial"),
             material={"youngs_modulus": E_STEEL, "density": 7850.0, "yield_strength": 1e9},
             requirements__limit_torque=1e4,
             **changes,

@@ -35,6 +35,7 @@ __all__ = [
     "ThesisFigure",
     "misprints",
     "needed_damping",
+    "rigid",
     "thesis_gear",
     "trace_figure",
 ]
@@ -116,6 +117,16 @@ def thesis_gear() -> Study:
     return loads(text, "gear.yaml")
 
 
+def rigid(topology: str, geometry: str) -> dict[str, str]:
+    """Block `damper` of a layout without compliance, as the thesis has it.
+
+    Parameters
+    ----------
+    topology, geometry : str
+    """
+    return {"topology": topology, "geometry": geometry, "compliance": "rigid"}
+
+
 def trace_figure(figure: ThesisFigure, study: Study, form: str) -> StabilityChart:
     """Chart of a figure.
 
@@ -140,7 +151,7 @@ def trace_figure(figure: ThesisFigure, study: Study, form: str) -> StabilityChar
 
 
 def _gear(figure: ThesisFigure, study: Study, geometry: str) -> Study:
-    gear = study.replace(damper={"topology": figure.topology, "geometry": geometry}, material=STEEL)
+    gear = study.replace(damper=rigid(figure.topology, geometry), material=STEEL)
     caption = {"L": 0.6, "gamma": float(np.deg2rad(31.0)), "b": 0.2, "c_lambda": 1e3, "I_arm": 5e-6, "k_lambda": 3.8e6}
     design = {name: value for name, value in {**caption, **figure.design}.items() if name in gear.start}
     return gear.replace(**{f"design__{name}__start": value for name, value in design.items()})

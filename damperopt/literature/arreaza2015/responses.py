@@ -15,7 +15,7 @@ from ...motion.simulate import Simulator
 from ...motion.trajectory import Motion, Trajectory, motion_of
 from ...stability.linear import LinearModel
 from ...study.study import Study
-from .charts import LOAD, STEEL
+from .charts import LOAD, STEEL, rigid
 
 __all__ = ["RESPONSES", "Response", "ThesisResponse", "respond"]
 
@@ -106,7 +106,7 @@ def respond(figure: ThesisResponse, study: Study, geometry: str) -> list[Respons
         strut = {"topology": "rotational", "torsional_stiffness": 3.8e5, "torsional_damping": 300.0}
         gear = study.replace(damper=strut, gear__rake_angle=RAKE, gear__wheel_radius=WHEEL_RADIUS)
     else:
-        gear = study.replace(damper={"topology": figure.topology, "geometry": geometry}, material=STEEL)
+        gear = study.replace(damper=rigid(figure.topology, geometry), material=STEEL)
     layout = {"L": 0.6, "gamma": float(np.deg2rad(31.0))}
     model, found = LinearModel(gear), []
     run = Simulator(gear, model=model)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..expressions.calculus import Expr, is_symbol, sqrt
+from ..expressions.calculus import Expr, is_symbol, sqrt, where
 from ..ports.linkage import Member, Point
 from ..ports.sizing import LimitEvent
 from .fatigue import Basquin, FlightStresses, life_damage
@@ -92,7 +92,7 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     Returns
     -------
     dict of str to Expr
-        ``limit``, ``ultimate``, ``fatigue``, and for a leg ``buckling``: Euler's load of pinned ends at ultimate.
+        ``limit``, ``ultimate``, ``fatigue``, and for a leg ``buckling``: as a column with pinned ends at ultimate load.
     """
     section, load = getattr(study.mass, member.section), getattr(event, member.load)
     allowed = allowables(study.material, event)
@@ -105,11 +105,15 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     force, length = load * member.share, distance(member.start, member.end) if member.length is None else member.length
     kappa_area, _ = shape_numbers(section)
     least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
-    euler = event.ultimate_factor * force / (math.pi**2 * study.material.youngs_modulus)
+    # in the stress of Euler's load, c A: columns that are short yield first (Johnson), tangent to Euler's at half the yield
+    F, c = event.ultimate_factor * force, math.pi**2 * study.material.youngs_modulus / (kappa_area * length) ** 2
+    yields = ultimate_stress(study.material) if study.material.yield_strength is None else study.material.yield_strength
+    euler = sqrt(F / c)
+    column = where(c * euler < yields / 2, euler, F / yields + yields / (4 * c))
     ratio = fatigue_ratio(member, force / member.area, event, study)
     if ratio is not None:
         least["fatigue"] = member.area * ratio
-    return least | {"buckling": kappa_area * length * sqrt(euler)}
+    return least | {"buckling": column}
 
 
 def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:

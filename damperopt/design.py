@@ -25,12 +25,13 @@ from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution
 from .optimum.left_out import left_out_by_number
 from .optimum.local import best_local, held_again
+from .optimum.margins import load_rows, margin_rows
 from .optimum.multistart import StartOutcome, run_starts, starting_designs
 from .optimum.problem import DesignProblem
 from .optimum.sensitivity import sensitivities
 from .optimum.solve import NlpSolver
 from .proof.certify import certify
-from .proof.check import check_decay, check_grid
+from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
 from .results import (
     Certificate,
@@ -57,6 +58,9 @@ REFINEMENTS = 5
 
 PEAK_TOLERANCE = 2e-3
 """Relative excess of exact peaks over those that size the parts: what lies between the speeds of the search, and smoothing."""
+
+MARGIN_ROUNDING = 1e-6
+"""Negative margin of safety that is the tolerance of the program."""
 
 NEARLY = 0.05
 """Relative excess of the exact decay ratio up to which it is taken for a speed that was missed, not for a fault."""
@@ -311,6 +315,13 @@ def _checked(
     if decay is not None and study.required.limit_event == "simulated":
         over = [name for name, peak in decay.peaks.items() if peak > (1 + PEAK_TOLERANCE) * event[name]]
         failures += [f"the exact simulation shows {decay.peaks[n]:.5g} for {n}, sized for {event[n]:.5g}" for n in over]
+    if study.required.damping_ratio is not None:
+        ratio, V, F_z = check_damping(study, solution.design, problem.model)
+        if ratio < study.required.damping_ratio:
+            failures.append(f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN")
+    simulated = {} if decay is None else decay.peaks
+    rows = margin_rows(study, solution.design, simulated)
+    failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]
     if solution.kkt_residual > KKT_TOLERANCE:
         failures.append(f"the KKT residual is {solution.kkt_residual:.2g}")
     verification = Verification(
@@ -343,6 +354,8 @@ def _checked(
             "constraints": constraints,
             "decay": decay,
             "decided_by": weights,
+            "loads": load_rows(study, solution.design, simulated),
+            "margins": rows,
             "not_checked": (*left_out_by_number(study, solution.design), *not_checked(study)),
             "certificate": certificate,
             "verification": verification,

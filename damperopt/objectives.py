@@ -14,9 +14,9 @@ from .errors import ConfigError
 from .ports.linkage import Linkage
 from .ports.sizing import LimitEvent, Size, Sized
 from .strength.limit_event import limit_event
-from .strength.members import member_sizes
+from .strength.sizes import RELAXED, member_sizes
 
-__all__ = ["SizedLayout", "limit_event", "sized_layout"]
+__all__ = ["RELAXED", "SizedLayout", "limit_event", "member_sizes", "sized_layout"]
 
 
 @dataclass(frozen=True)

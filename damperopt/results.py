@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from .errors import ConfigError
+from .load_rows import LoadRow, MarginRow
 from .reading import MOST_RESULT_BYTES, printable, text_of
 
 __all__ = [
@@ -21,7 +22,9 @@ __all__ = [
     "DecayCheck",
     "DesignResult",
     "Infeasibility",
+    "LoadRow",
     "LocalOptimum",
+    "MarginRow",
     "MassResult",
     "OperatingPoint",
     "Provenance",
@@ -274,6 +277,9 @@ class DesignResult(_Record):
     mass: MassResult | None = None
     stability: OperatingPoint | None = None
     constraints: tuple[ConstraintResult, ...] = ()
+    loads: tuple[LoadRow, ...] = ()
+    margins: tuple[MarginRow, ...] = ()
+    implausible: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
     certificate: Certificate | None = None
     verification: Verification | None = None

@@ -16,7 +16,7 @@ from .study.study import Study
 
 __all__ = ["SymbolicStudy", "data_names", "data_values", "symbolic"]
 
-_DATA_BLOCKS = ("gear", "tyre", "damper", "material", "requirements", "mass")
+_DATA_BLOCKS = ("gear", "tyre", "damper", "material", "requirements", "loads", "mass")
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class SymbolicStudy:
     Attributes
     ----------
     study : Study
-        Records with `casadi.SX` in place of floats (blocks gear, tyre, damper, material, requirements, mass).
+        Records with `casadi.SX` in place of floats (blocks gear, tyre, damper, material, requirements, loads, mass).
     data : casadi.SX
         (n,) the symbols, in the order of `names`.
     names : tuple of str

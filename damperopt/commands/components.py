@@ -18,6 +18,7 @@ ROOMS = {
     "contact lines": "tyre.contact",
     "linkages": "damper.topology",
     "dampers": "damper.kind",
+    "load cases": "loads.cases",
 }
 """Key of a study that chooses from a room."""
 

@@ -107,7 +107,7 @@ class Hydraulic(Damper):
             return self._cylinder(event, model, symbol("rod_diameter"), piston_area(event, model))
         area, stroke = event.design["A_piston"], event.design["s_damper"]
         sized = self._cylinder(replace(event, stroke=stroke), model, event.design["rod_diameter"], area)
-        torque = ("loads", "requirements.limit_torque")
+        torque = ("loads",)
         chosen = (
             Size("A_piston", "m^2", area, {"piston_pressure": (piston_area(event, model), ("mass.working_pressure", *torque))}),
             Size("s_damper", "m", stroke, {"damper_stroke": (event.stroke, torque)}),

@@ -102,13 +102,8 @@ class Arreaza(TorqueLinks):
 
     def _support(self, design: Mapping[str, Expr], end: Point, ell: Expr, h: Expr) -> tuple[Member, ...]:
         L, b = design["L"], design["b"]
-        rest: dict[str, Any] = {
-            "part": "support",
-            "kind": "support",
-            "section": "support_section",
-            "end": end,
-            "load": "damper_force",
-        }
+        rest: dict[str, Any] = {"part": "support", "kind": "support", "end": end}
+        rest |= {"section": "support_section", "load": "damper_force"}
         if not self.is_sized("support"):
             # weighed as a cantilever of length b, which is less than what reaches from the hinge line to the damper
             return (Member("rigid support", start=(0.0, -b, h), length=b, **{**rest, "part": "support arm"}),)

@@ -59,7 +59,7 @@ class Utas(TorqueLinks):
         )
 
     def _softer(self, b: Expr, l_arm: Expr) -> Expr:
-        """Deflection of the tip over that of an arm whose root is held: a hinge line of its section turns by M b/(E I)."""
+        """Deflection of the tip over that of an arm clamped at its root: a hinge line of its section turns by M b/(E I)."""
         return 1 + 3 * b / l_arm if self.is_sized("arm") else 1
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:

@@ -66,6 +66,24 @@ def constraint_results(
                 relaxed_by=("requirements.decay.ratio", "requirements.decay.cycles", "envelope.speed"),
             )
         )
+    if best.damping:
+        limit = study.required.damping_ratio
+        assert limit is not None
+        carried = float(solution.multipliers.damping.sum())
+        results.append(
+            ConstraintResult(
+                name="damping_ratio",
+                kind="decay",
+                value=best.damping[0].ratio,
+                limit=limit,
+                sense=">=",
+                unit="1",
+                active=carried > 1e-6 * solution.objective,
+                multiplier=carried,
+                shadow_price=carried / limit,
+                relaxed_by=("requirements.damping_ratio", "envelope.speed"),
+            )
+        )
     values, rows = problem.values(solution.design, factors), problem.rows(solution.design, factors)
     for constraint, multiplier in zip(problem.constraints, solution.multipliers.rows, strict=True):
         value, limit = values[constraint.name]

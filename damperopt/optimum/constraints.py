@@ -11,11 +11,11 @@ from typing import Any, Literal
 
 from ..expressions.calculus import cos, log
 from ..linkages.base import TorqueLinks
-from ..objectives import SizedLayout
+from ..objectives import RELAXED, SizedLayout
 from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
 from ..strength.materials import allowable_stress
-from ..strength.members import allowables, root_stress
+from ..strength.members import allowables, fatigue_ratio, root_stress
 
 __all__ = ["Constraint", "geometry", "strength"]
 
@@ -87,24 +87,33 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
 
 def _arm(study: Any, member: Member, event: LimitEvent) -> list[Constraint]:
     """Static and fatigue strength of a bending arm."""
-    required, name = study.requirements, member.kind
-    stress = root_stress(member, event, study)
-    torque = ("requirements.limit_torque", "requirements.limit_torque_factor")
-    found = []
+    required, name, stress = study.requirements, member.kind, root_stress(member, event, study)
     if study.damper.has_sized_parts():
-        allowed_by = allowables(study.material, event)
-    else:  # the rigid chain of the thesis, with one factor
-        allowed_by = {"limit": allowable_stress(study.material, required.safety_factor)}
-    for check, allowed in allowed_by.items():
-        relaxed: tuple[str, ...] = ("requirements.safety_factor", *torque) if check == "limit" else torque
-        label = f"{name}_stress" if check == "limit" else f"{name}_{check}"
-        found.append(Constraint(label, stress, allowed, False, "Pa", relaxed, ratio=True))
+        return _elastic_arm(study, member, event, stress)
+    torque = ("loads", "requirements.limit_torque", "requirements.limit_torque_factor")
+    allowed = allowable_stress(study.material, event.safety_factor, event.ultimate_factor)
+    found = [Constraint(f"{name}_stress", stress, allowed, False, "Pa", ("requirements.limit_factor", *torque), ratio=True)]
     if study.material.has_fatigue_data:
         amplitude, cycles = required.fatigue.stress_fraction * stress, required.fatigue.cycles
         endured = study.material.fatigue_strength_coefficient * (2 * cycles) ** study.material.fatigue_exponent
         relaxed = ("requirements.fatigue.stress_fraction", "requirements.fatigue.cycles", *torque)
         found.append(Constraint(f"{name}_fatigue", amplitude, endured, False, "Pa", relaxed, ratio=True))
     return found
+
+
+def _elastic_arm(study: Any, member: Member, event: LimitEvent, stress: Any) -> list[Constraint]:
+    """Yield at limit load, rupture at ultimate load, and the spectrum of flights."""
+    name = member.kind
+    found = [
+        Constraint(f"{name}_{check}", stress, allowed, False, "Pa", RELAXED[check], ratio=True)
+        for check, allowed in allowables(study.material, event).items()
+    ]
+    ratio = fatigue_ratio(member, stress, event, study)
+    return (
+        found
+        if ratio is None
+        else [*found, Constraint(f"{name}_fatigue", ratio, 1, False, "1", RELAXED["fatigue"], ratio=True)]
+    )
 
 
 def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: SizedLayout) -> list[Constraint]:
@@ -146,8 +155,8 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
         blocks.append(Constraint("apex_room", sized.needed_length, required.apex_room, False, "m", ("requirements.apex_room",)))
     stop = study.damper.stop
     if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
-        relaxed = ("damper.end_stop.stroke",)
-        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", relaxed, ratio=True))
+        longer = ("damper.end_stop.stroke",)
+        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", longer, ratio=True))
     most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
     if study.damper.has_sized_parts() and most is not None:
         width = study.damper.links.width(design["L"])

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-__all__ = ["CONSTANT", "Cut", "monomials"]
+from .problem import DesignProblem
+
+__all__ = ["CONSTANT", "Cut", "about", "monomials"]
+
+ACROSS = 1e-8
+"""Cosine between a step and what it shows of a gradient below which it shows no curvature along itself."""
 
 CONSTANT = 0
 """Which of `monomials` is 1: its coefficient is the value at x = 0."""
@@ -57,3 +63,44 @@ class Cut:
         """Value, gradient and curvature of the same function at x = 0: coefficients of `monomials`, in one vector."""
         linear = self.gradient - self.curvature @ self.centre
         return np.concatenate([[self.at(0 * self.centre)], linear, self.curvature.ravel()])
+
+
+def about(
+    problem: DesignProblem,
+    design: Mapping[str, float],
+    numbers: Sequence[tuple[float, float, float, np.ndarray]],
+    before: Sequence[Cut | None],
+    learning_step: float,
+) -> list[Cut]:
+    """Cuts of (speed, load, value, d ln value/d ln design) about a design; curvature by symmetric rank-one updates.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    design : mapping of str to float
+        Design variables by name [SI].
+    numbers : sequence of tuple
+    before : sequence of Cut or None
+        Of the same points in the last round; None where there was none.
+    learning_step : float
+        Step below which the difference of two gradients shows their errors and no curvature.
+    """
+    n = len(problem.design_names)
+    x = problem.scaled(design)[:n]
+    slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:n]])
+    cuts = []
+    for (speed, load, value, gradient), last in zip(numbers, before, strict=True):
+        scaled = gradient * slopes
+        cuts.append(Cut(speed, load, float(np.log(value)), scaled, x, _curvature(last, x, scaled, learning_step)))
+    return cuts
+
+
+def _curvature(last: Cut | None, x: np.ndarray, gradient: np.ndarray, learning_step: float) -> np.ndarray:
+    if last is None:
+        return np.zeros((x.size, x.size))
+    step = x - last.centre
+    surprise = gradient - last.gradient - last.curvature @ step
+    along = surprise @ step
+    if np.linalg.norm(step) < learning_step or abs(along) <= ACROSS * np.linalg.norm(surprise) * np.linalg.norm(step):
+        return last.curvature
+    return last.curvature + np.outer(surprise, surprise) / along

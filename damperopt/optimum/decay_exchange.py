@@ -10,7 +10,8 @@ import numpy as np
 
 from ..motion.decay import DecayPoint
 from ..stability.worst import worst_points
-from .cuts import Cut
+from .cuts import Cut, about
+from .damping_exchange import DampingHold, DampingPoint
 from .exchange import EnvelopeSolution, allowed_abscissa, missed_points
 from .program import CUTS, Program
 from .solve import NlpSolver
@@ -39,9 +40,6 @@ STILL = 1e-6
 
 LEARNING_STEP, PEAK_LEARNING_STEP = 1e-5, 3e-3
 """Steps below which the difference of two gradients, of decay ratios or of peaks, shows their errors and no curvature."""
-
-ACROSS = 1e-8
-"""Cosine between a step and what it shows of a gradient below which it shows no curvature along itself."""
 
 REFINED = 1e-2
 """Step of the scaled variables below which the worst speeds are looked for in earnest."""
@@ -84,7 +82,7 @@ class DecayHold:
         numbers = [(p.speed, p.load, p.ratio, p.gradient) for p in points]
         # a speed that has moved keeps what was learnt
         before = [next((c for c in self._last if _moved(n[:2], (c.speed, c.load))), None) for n in numbers]
-        self._last = self._about(design, numbers, before, LEARNING_STEP)
+        self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
 
     def peaks(self, design: Mapping[str, float], refined: bool) -> list[Cut]:
@@ -95,36 +93,8 @@ class DecayHold:
         points = [self._analysis.at(design, *place, gradient=True) for place in places]
         numbers = [(p.speed, p.load, p.peaks[k], p.peak_gradients[k]) for k, p in enumerate(points)]
         before: Sequence[Cut | None] = self._last_peaks or [None] * len(points)
-        self._last_peaks = self._about(design, numbers, before, PEAK_LEARNING_STEP)
+        self._last_peaks = about(self._problem, design, numbers, before, PEAK_LEARNING_STEP)
         return self._last_peaks
-
-    def _about(
-        self,
-        design: Mapping[str, float],
-        numbers: Sequence[tuple[float, float, float, np.ndarray]],
-        before: Sequence[Cut | None],
-        learning_step: float,
-    ) -> list[Cut]:
-        """Cuts of (speed, load, value, d ln value/d ln design); curvature by symmetric rank-one updates of those before."""
-        n = len(self._problem.design_names)
-        x = self._problem.scaled(design)[:n]
-        slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in self._problem.variables[:n]])
-        cuts = []
-        for (speed, load, value, gradient), last in zip(numbers, before, strict=True):
-            scaled = gradient * slopes
-            cuts.append(Cut(speed, load, float(np.log(value)), scaled, x, _curvature(last, x, scaled, learning_step)))
-        return cuts
-
-
-def _curvature(last: Cut | None, x: np.ndarray, gradient: np.ndarray, learning_step: float) -> np.ndarray:
-    if last is None:
-        return np.zeros((x.size, x.size))
-    step = x - last.centre
-    surprise = gradient - last.gradient - last.curvature @ step
-    along = surprise @ step
-    if np.linalg.norm(step) < learning_step or abs(along) <= ACROSS * np.linalg.norm(surprise) * np.linalg.norm(step):
-        return last.curvature
-    return last.curvature + np.outer(surprise, surprise) / along
 
 
 def _moved(point: tuple[float, float], held: tuple[float, float]) -> bool:
@@ -161,15 +131,13 @@ def solve_with_decay(
         Where the ratio cannot be reached, not solved, with the design of least ratio and its `decay`.
     """
     study = solver.problem.study
-    required = study.required.decay
-    assert required is not None
     allowed = allowed_abscissa(study)
-    least_ratio = required.ratio * (1 - study.solver.decay_reserve / 2)
-    hold, points, design, radius = DecayHold(solver, decay_points), list(points), dict(start), FIRST_RADIUS
-    decay, looked = hold.worst(design, refined=False), True
-    cuts, peaks = hold.cuts(design), hold.peaks(design, refined=False)
+    points, design, radius = list(points), dict(start), FIRST_RADIUS
+    hold = _Holds(solver, decay_points)
+    hold.look(design, refined=False, motions=True)
+    cuts = hold.cuts(design, refined=False)
     for rounds in range(1, DECAY_ROUNDS + 1):
-        solution = solver.solve(design, points, form, cuts, peaks=peaks, radius=radius, **options)
+        solution = solver.solve(design, points, form, radius=radius, **cuts, **options)
         if not solution.converged:
             if radius > WIDEST:
                 return EnvelopeSolution(solution, (), rounds, False)
@@ -181,21 +149,59 @@ def solve_with_decay(
         violating = missed_points(worst, allowed, points)
         points += violating
         looked = step < REFINED or rounds % LOOK_AGAIN == 0
-        if looked:
-            decay = hold.worst(design, refined=step < REFINED)
-        before, cuts, peaks = cuts, hold.cuts(design), hold.peaks(design, refined=step < REFINED)
+        hold.look(design, refined=step < REFINED, motions=looked)
+        before, cuts = cuts, hold.cuts(design, refined=step < REFINED)
         if step < STILL and looked and not violating:
-            met = worst[0].abscissa <= allowed and decay[0].ratio <= least_ratio
+            met = worst[0].abscissa <= allowed and hold.met()
             if met or solution.excess > STILL:  # all that the ratio can be lowered to
-                return EnvelopeSolution(solution, tuple(worst), rounds, met, tuple(decay))
-        radius = _next_radius(radius, _model_error(before, cuts))
-    return EnvelopeSolution(solution, (), rounds, False, tuple(decay))
+                return EnvelopeSolution(solution, tuple(worst), rounds, met, tuple(hold.decay), tuple(hold.damping))
+        radius = _next_radius(radius, max(_model_error(before[kind], cuts[kind]) for kind in MODELLED))
+    return EnvelopeSolution(solution, (), rounds, False, tuple(hold.decay), tuple(hold.damping))
+
+
+MODELLED = ("cuts", "damping_cuts")
+"""What the errors of models are looked for in."""
+
+
+class _Holds:
+    """Everything that is held by models about a design: decay and peaks of motions, damping ratio of the yaw mode."""
+
+    def __init__(self, solver: NlpSolver, decay_points: Sequence[tuple[float, float]]):
+        self._study = solver.problem.study
+        required = self._study.required
+        self._motions = None if required.decay is None else DecayHold(solver, decay_points)
+        self._mode = None if required.damping_ratio is None else DampingHold(solver.problem, CUTS)
+        self.decay, self.damping = list[DecayPoint](), list[DampingPoint]()
+
+    def look(self, design: Mapping[str, float], refined: bool, motions: bool) -> None:
+        """Look for the worst speeds; those of motions, which take time, where asked for."""
+        if self._motions and motions:
+            self.decay = self._motions.worst(design, refined)
+        if self._mode:
+            self.damping = self._mode.worst(design)
+
+    def cuts(self, design: Mapping[str, float], refined: bool) -> dict[str, list[Cut]]:
+        """Models about a design, by the names of the options of `NlpSolver.solve`."""
+        motions, mode = self._motions, self._mode
+        return {
+            "cuts": motions.cuts(design) if motions else [],
+            "peaks": motions.peaks(design, refined) if motions else [],
+            "damping_cuts": mode.cuts(design) if mode else [],
+        }
+
+    def met(self) -> bool:
+        """Whether the worst that was found is good enough."""
+        required, reserve = self._study.required, self._study.solver.decay_reserve / 2
+        decays = required.decay is None or self.decay[0].ratio <= required.decay.ratio * (1 - reserve)
+        return decays and (required.damping_ratio is None or self.damping[0].ratio >= required.damping_ratio * (1 + reserve))
 
 
 def _model_error(before: Sequence[Cut], after: Sequence[Cut]) -> float:
-    """Largest difference of ln(decay ratio) from what the models of the last round say; that of a bad one without any."""
-    at_same = {(c.speed, c.load): c for c in before}
-    errors = [abs(c.value - at_same[c.speed, c.load].at(c.centre)) for c in after if (c.speed, c.load) in at_same]
+    """Largest difference from what the models of the last round say; that of a bad one without any."""
+    if not after:
+        return 0.0
+    pairs = ((c, next((b for b in before if _moved((c.speed, c.load), (b.speed, b.load))), None)) for c in after)
+    errors = [abs(cut.value - model.at(cut.centre)) for cut, model in pairs if model is not None]
     return max(errors, default=1.0)
 
 

@@ -9,6 +9,7 @@ from ..motion.decay import DecayPoint
 from ..results import OperatingPoint
 from ..stability.worst import worst_points
 from ..study.study import Study
+from .damping_exchange import DampingPoint
 from .program import HurwitzProgram, Program
 from .solve import LocalSolution, NlpSolver
 
@@ -32,6 +33,8 @@ class EnvelopeSolution:
         Local maxima of the spectral abscissa of its design, the worst first; empty if the last round failed.
     decay : tuple of DecayPoint
         Local maxima of its decay ratio over the speed, the worst first; empty where none is required.
+    damping : tuple of DampingPoint
+        Dips of the damping ratio of the yaw mode, the least first; empty where none is required.
     rounds : int
     solved : bool
         True when no point of the envelope violates the margin.
@@ -42,6 +45,7 @@ class EnvelopeSolution:
     rounds: int
     solved: bool
     decay: tuple[DecayPoint, ...] = ()
+    damping: tuple[DampingPoint, ...] = ()
 
 
 def first_points(solver: NlpSolver) -> list[tuple[float, float]]:

@@ -10,7 +10,7 @@ import numpy as np
 from .decay_exchange import solve_with_decay
 from .exchange import EnvelopeSolution, solve_envelope
 from .problem import DesignProblem
-from .program import FactorProgram, HurwitzProgram
+from .program import FactorProgram, HurwitzProgram, has_models
 from .solve import NlpSolver
 
 __all__ = ["best_local", "held_again"]
@@ -35,7 +35,7 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
     EnvelopeSolution
         That meets the decay requirement too, if there is one.
     """
-    if solver.problem.study.required.decay is None:
+    if not has_models(solver.problem):
         return _best_stable(solver, start, points)
     if _decays_moderately(solver.problem, start):  # such a start may lie in a basin of its own
         direct = solve_with_decay(solver, start, points, HurwitzProgram)
@@ -65,7 +65,7 @@ def held_again(
     EnvelopeSolution
     """
     design, points = found.solution.design, [*found.solution.points, *points]
-    if solver.problem.study.required.decay is None:
+    if not has_models(solver.problem):
         return best_local(solver, design, points)
     form = FactorProgram if found.solution.form == FactorProgram.__name__ else HurwitzProgram
     return solve_with_decay(solver, design, points, form, decay_points)
@@ -84,10 +84,12 @@ def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence
 
 def _decays_moderately(problem: DesignProblem, design: Mapping[str, float]) -> bool:
     """Whether the linear gear decays, and not ten times as well as it must."""
+    required = problem.study.required.decay
+    if required is None:
+        return False
     if not problem.has_one_damping:
         return True
-    required, yaw = problem.study.required.decay, problem.yaw_numbers(design)
-    assert required is not None
+    yaw = problem.yaw_numbers(design)
     k_psi, c_psi = (np.array([yaw[name]]) for name in ("torsional_stiffness", "torsional_damping"))
     return bool(MUCH_BETTER * required.ratio < problem.screening.linear_decay(k_psi, c_psi)[0] < 1)
 

@@ -39,6 +39,7 @@ __all__ = [
     "FactorProgram",
     "HurwitzProgram",
     "Program",
+    "has_models",
     "price",
     "relaxable",
 ]
@@ -78,10 +79,11 @@ class Program(Protocol):
         Of x: ``design``, scaled; ``excess`` of the cuts, with a decay requirement; ``stability``, of the conditions; an
         elastic program has ``slack`` and ``margin`` too.
     rows : Blocks
-        Of g: ``strength`` and geometry; ``decay``; ``stability``.
+        Of g: ``strength`` and geometry; ``decay``; ``damping`` of the yaw mode; ``stability``.
     parameters : Blocks
         Of p: ``data``, ``load_limit``; ``speeds``, ``loads`` and ``rates`` of the slots; with simulated peaks
-        ``simulated``, a switch, and ``peaks``, their models; with a decay requirement ``cuts``; ``stability``.
+        ``simulated``, a switch, and ``peaks``, their models; with a decay requirement ``cuts``; with a damping ratio
+        ``damping_cuts``; ``stability``.
     """
 
     nlp: dict[str, ca.SX]
@@ -92,6 +94,12 @@ class Program(Protocol):
     def __init__(self, problem: DesignProblem, slots: int): ...
 
     def instance(self, design: Mapping[str, float], points: Points, **options: Any) -> Instance: ...
+
+
+def has_models(problem: DesignProblem) -> bool:
+    """Whether something is held by models about a design."""
+    required = problem.study.required
+    return required.decay is not None or required.damping_ratio is not None
 
 
 def relaxable(problem: DesignProblem) -> tuple[str, ...]:
@@ -127,9 +135,14 @@ class _Common:
             factors = ca.exp(simulated * (peaks.T @ known - ca.log(estimated)))
             self.parameters |= {"simulated": simulated, "peaks": peaks}
         self.mass, self.strength = problem.mass_and_rows(design, sizes, data, load_limit, factors)
-        self.decay, self.excess = ca.SX(0, 1), ca.SX(0, 1)
-        if problem.study.required.decay is not None:
+        self.decay, self.damping, self.excess = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
+        if has_models(problem):
             self.excess = ca.SX.sym("excess")
+        if problem.study.required.damping_ratio is not None:
+            damping_cuts = ca.SX.sym("damping_cuts", known.numel(), CUTS)
+            self.damping = damping_cuts.T @ known - np.log1p(-problem.study.solver.decay_reserve)
+            self.parameters |= {"damping_cuts": damping_cuts}
+        if problem.study.required.decay is not None:
             cuts = ca.SX.sym("cuts", known.numel(), CUTS)
             ratio = data[problem.data_names.index("requirements.decay.ratio")]
             limit = ca.log(ratio) + np.log1p(-problem.study.solver.decay_reserve)
@@ -147,6 +160,7 @@ class _Common:
         points: Points,
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
+        damping_cuts: Sequence[Cut] = (),
         margin: float | None = None,
     ) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
         """Parameters by block; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
@@ -162,10 +176,11 @@ class _Common:
         if "peaks" in self.parameters:
             models = [peak.about_zero() for peak in peaks] or [Cut.constant(0.0, n).about_zero()] * len(PEAKS)
             values |= {"simulated": float(bool(peaks)), "peaks": np.concatenate(models)}
-        if "cuts" in self.parameters:
-            unused = Cut.constant(NEVER, n).about_zero()
-            columns = [cut.about_zero() for cut in cuts]
-            values["cuts"] = np.concatenate([*columns, *[unused] * (CUTS - len(columns))])
+        for name, given in (("cuts", cuts), ("damping_cuts", damping_cuts)):
+            if name in self.parameters:
+                unused = Cut.constant(NEVER, n).about_zero()
+                columns = [cut.about_zero() for cut in given]
+                values[name] = np.concatenate([*columns, *[unused] * (CUTS - len(columns))])
         return values, roots, rates
 
     def box(self, design: Mapping[str, float], radius: float) -> Limits:
@@ -193,7 +208,7 @@ class _Program:
 
     def _instance(self, variables: Mapping[str, Limits], values: Mapping[str, Any], conditions: ConditionNumbers) -> Instance:
         own, met = {"excess": Limits(0.0, np.inf, 0.0), "stability": conditions.variables}, Limits(-np.inf, 0.0)
-        rows = {"strength": met, "decay": met, "stability": conditions.rows}
+        rows = {"strength": met, "decay": met, "damping": met, "stability": conditions.rows}
         values = {**values, "stability": conditions.parameters}
         return instance_of(self.variables, self.rows, self.parameters, {**own, **variables}, rows, values)
 
@@ -212,7 +227,12 @@ class _MassProgram(_Program):
         super().__init__(problem, slots)
         common, excess = self._common, ca.sum1(self._common.excess)
         self.variables = Blocks(design=common.x, excess=common.excess, stability=self._stability.variables)
-        self.rows = Blocks(strength=common.strength, decay=common.decay - excess, stability=self._stability.rows)
+        self.rows = Blocks(
+            strength=common.strength,
+            decay=common.decay - excess,
+            damping=common.damping - excess,
+            stability=self._stability.rows,
+        )
         self.nlp = self._nlp(common.mass + EXCESS_PRICE * excess)
 
     def instance(
@@ -221,11 +241,12 @@ class _MassProgram(_Program):
         points: Points,
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
+        damping_cuts: Sequence[Cut] = (),
         radius: float = np.inf,
         **options: Any,
     ) -> Instance:
         """The program at `points`, started and scaled at `design`, no design variable further than `radius` from there."""
-        values, roots, rates = self._common.numbers(design, points, cuts, peaks)
+        values, roots, rates = self._common.numbers(design, points, cuts, peaks, damping_cuts)
         conditions = self._stability.numbers(roots, rates, len(points))
         return self._instance({"design": self._common.box(design, radius)}, values, conditions)
 
@@ -269,6 +290,7 @@ class _ElasticProgram(_Program):
         self.rows = Blocks(
             strength=common.strength - slack[:strength],
             decay=common.decay - ca.sum1(slack[strength:]) - excess,
+            damping=common.damping - excess,
             stability=conditions.rows,
         )
         by_name = {name: slack[i] for i, name in enumerate(self._names[:-1])}
@@ -280,6 +302,7 @@ class _ElasticProgram(_Program):
         points: Points,
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
+        damping_cuts: Sequence[Cut] = (),
         radius: float = np.inf,
         **options: Any,
     ) -> Instance:
@@ -292,7 +315,7 @@ class _ElasticProgram(_Program):
         abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
         kept = min(self._required, -abscissa - 2 * problem.study.solver.margin_reserve)
         slack, margin = np.where(may_move[:-1], needed + SLACK, 0.0), kept if may_move[-1] else self._required
-        values, roots, rates = self._common.numbers(design, points, cuts, peaks, margin=margin)
+        values, roots, rates = self._common.numbers(design, points, cuts, peaks, damping_cuts, margin)
         variables = {
             "design": self._common.box(design, radius),
             "slack": Limits(0.0, np.where(may_move[:-1], np.inf, 0.0), slack),

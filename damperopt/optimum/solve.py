@@ -50,13 +50,14 @@ class Multipliers:
         Of the strength and geometry rows, >= 0.
     bounds : ndarray
         Of the bounds of the scaled variables, positive at an upper bound.
-    cuts : ndarray
-        (m,) of the decay cuts.
+    cuts, damping : ndarray
+        (m,) of the cuts of decay and of damping ratio.
     """
 
     rows: np.ndarray
     bounds: np.ndarray
     cuts: np.ndarray
+    damping: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -166,6 +167,7 @@ class NlpSolver:
         form: type[Program] = HurwitzProgram,
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
+        damping_cuts: Sequence[Cut] = (),
         **options: Any,
     ) -> LocalSolution:
         """Local solution from `design` with stability imposed at `points` and decay by `cuts`.
@@ -180,6 +182,7 @@ class NlpSolver:
         cuts : sequence of Cut
         peaks : sequence of Cut
             Simulated peaks that size the parts; none: as estimated.
+        damping_cuts : sequence of Cut
         **options : object
             Passed to `Program.instance`.
 
@@ -188,7 +191,7 @@ class NlpSolver:
         LocalSolution
         """
         built = self._program(form, len(points))
-        it = built.program.instance(design, points, cuts=cuts, peaks=peaks, **options)
+        it = built.program.instance(design, points, cuts=cuts, peaks=peaks, damping_cuts=damping_cuts, **options)
         result = built.solver(x0=it.x0, p=it.p, lbx=it.lbx, ubx=it.ubx, lbg=it.lbg, ubg=it.ubg)
         stats = built.solver.stats()
         raise_if_interrupted(stats)
@@ -213,6 +216,7 @@ class NlpSolver:
                 rows=rows.part(lam_g, "strength"),
                 bounds=variables.part(lam_x, "design"),
                 cuts=rows.part(lam_g, "decay")[: len(cuts)],
+                damping=rows.part(lam_g, "damping")[: len(damping_cuts)],
             ),
             gradient=_gradient(built.program, by_parameter, len(points), len(peaks)),
             kkt_residual=_kkt_residual(built, it, x, g, lam_g, lam_x),

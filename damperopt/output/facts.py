@@ -141,7 +141,8 @@ def _event(study: Study, result: DesignResult) -> LimitEvent | None:
         arm_moment=math.nan,
         spring_force=peaks["spring_force"],
         spring_energy=math.nan,  # like the other two: no size of a member hangs on it
-        safety_factor=study.required.safety_factor,
+        safety_factor=study.required.limit_factor,
+        ultimate_factor=study.required.ultimate_factor,
     )
 
 
@@ -169,10 +170,13 @@ def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, floa
         return f"{member.part}, root", member.inertia, min((member.inertia / value) ** 0.75 for value in least.values()) - 1
     if member.inertia is not None:
         allowed = allowables(study.material, event) if study.damper.has_sized_parts() else {}
-        stress = min(allowed.values(), default=allowable_stress(study.material, study.required.safety_factor))
+        stress = min(
+            allowed.values(),
+            default=allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor),
+        )
         return member.name, member.inertia, stress / root_stress(member, event, study) - 1
     length = distance(member.start, member.end) if member.length is None else member.length
-    allowable = allowable_stress(study.material, study.required.safety_factor)
+    allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
     area = area_for_modulus(getattr(study.mass, member.section), getattr(event, member.load) * length / allowable)
     return f"{member.name}, root", (area / kappa_area) ** 2, 0.0
 
@@ -183,7 +187,7 @@ def _cylinder(study: Study, event: LimitEvent, chosen: Mapping[str, float]) -> l
     if rod is None:
         return []
     area, stroke = chosen.get("A_piston", piston_area(event, model)), chosen.get("s_damper", event.stroke)
-    sigma = allowable_stress(model.damper_material, study.required.safety_factor)
+    sigma = allowable_stress(model.damper_material, study.required.limit_factor, study.required.ultimate_factor)
     event = replace(event, stroke=stroke)
     least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}
     diameter = float(bore(area, rod))

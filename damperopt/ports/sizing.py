@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from ..expressions.calculus import Expr
 
@@ -64,6 +65,8 @@ class LimitEvent:
         On rupture and buckling under these loads.
     service_stroke : Expr
         Damper stroke to one side under the torque of service [m]; None: the same as `stroke`.
+    flight : FlightStresses or None
+        Torques of a flight over the limit torque; None: the parts are not sized by a spectrum.
     design : mapping of str to Expr
         Design variables by name [SI].
     """
@@ -80,6 +83,7 @@ class LimitEvent:
     safety_factor: Expr = 1
     ultimate_factor: Expr = 1.5
     service_stroke: Expr = None
+    flight: Any = None
     design: Mapping[str, Expr] = field(default_factory=dict)
 
 

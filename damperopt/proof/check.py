@@ -16,7 +16,7 @@ from ..results import DecayCheck, OperatingPoint
 from ..stability.linear import LinearModel
 from ..study.study import Study
 
-__all__ = ["GridCheck", "check_decay", "check_grid"]
+__all__ = ["GridCheck", "check_damping", "check_decay", "check_grid"]
 
 PER_CYCLE = 64
 """Output points in a cycle of the fastest mode."""
@@ -75,6 +75,38 @@ def check_grid(study: Study, design: Mapping[str, float], model: LinearModel | N
     top = int(abscissa.argmax())
     worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
     return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)
+
+
+def check_damping(study: Study, design: Mapping[str, float], model: LinearModel | None = None) -> tuple[float, float, float]:
+    """Least damping ratio of the yaw mode on the grid of `check_grid`, with the speed and load where it is.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping
+        Design variables by name [SI].
+    model : LinearModel or None
+        Of the study, if it is at hand.
+
+    Returns
+    -------
+    tuple of float
+        Ratio, speed [m/s], load [N]; the mode is the oscillation in which the yaw angle moves most for its rate's share of all
+        rates of angles, found anew at each point.
+    """
+    gear, envelope = (model or LinearModel(study)).at(design), study.envelope
+    angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
+    speeds = np.geomspace(envelope.speed.min, envelope.speed.max, study.solver.verification_speeds)
+    least = (math.inf, math.nan, math.nan)
+    for load in envelope.loads:
+        for V, A in zip(speeds, gear.matrices(speeds, load), strict=True):
+            roots, modes = np.linalg.eig(A)
+            unit = np.eye(len(A))[[angle, rate]]
+            shares = np.abs(np.linalg.solve(modes, unit.T)) * np.abs(modes[[angle, rate]]).T  # of a pure yaw, in each mode
+            found = [(shares[i].sum(), -roots[i].real / abs(roots[i])) for i in range(len(roots)) if roots[i].imag > 0]
+            if found and max(found)[1] < least[0]:
+                least = (float(max(found)[1]), float(V), load)
+    return least
 
 
 def check_decay(

@@ -39,10 +39,10 @@ def rod_diameters(event: LimitEvent, model: Any) -> dict[str, tuple[Expr, tuple[
         Limit -> (diameter [m], key paths that would relax it).
     """
     steel, F = model.damper_material, event.damper_force
-    allowable = allowable_stress(steel, event.safety_factor)
+    allowable = allowable_stress(steel, event.safety_factor, event.ultimate_factor)
     buckling = 64 * model.rod_buckling_factor * F * rod_length(event, model) ** 2
     return {
-        "rod_yield": (sqrt(4 * F / (math.pi * allowable)), ("requirements.safety_factor",)),
+        "rod_yield": (sqrt(4 * F / (math.pi * allowable)), ("requirements.limit_factor",)),
         "rod_buckling": ((buckling / (math.pi**3 * steel.youngs_modulus)) ** 0.25, ("mass.rod_buckling_factor",)),
         "rod_minimum": (model.least_rod_diameter, ("mass.least_rod_diameter",)),
     }
@@ -92,7 +92,7 @@ def cylinder_mass(event: LimitEvent, model: Any, rod_diameter: Expr, area: Expr)
     # D bore, t wall of a thin cylinder p D/(2 sigma) plus an allowance for wear and threads, caps as clamped plates
     # plus the same
     steel = model.damper_material
-    sigma = allowable_stress(steel, event.safety_factor)
+    sigma = allowable_stress(steel, event.safety_factor, event.ultimate_factor)
     p, length = model.working_pressure, rod_length(event, model)
     D = bore(area, rod_diameter)
     t = model.wall_allowance + p * D / (2 * sigma)

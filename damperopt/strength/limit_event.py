@@ -14,11 +14,13 @@ from typing import Any
 from ..expressions.calculus import Expr, absolute, sqrt
 from ..ports.linkage import Linkage
 from ..ports.sizing import LimitEvent
+from .fatigue import FlightStresses
 from .release import peak_damper_torque
 
-SERVICE = 0.25
+__all__ = ["flight_shares", "limit_event", "peaks_of"]
 
-__all__ = ["limit_event", "peaks_of"]
+UNSTATED = 1 / 3, 3
+"""Decay ratio and cycles of a landing transient for which nothing is required."""
 
 
 def limit_event(
@@ -42,13 +44,11 @@ def limit_event(
     -------
     LimitEvent
     """
-    torque = study.requirements.limit_torque
-    if study.requirements.limit_event == "simulated":
-        torque = linkage.torsional_stiffness * _disturbed_yaw(study, linkage)
-    elif torque is None:
-        peaks = study.tyre.peaks(load, study.tyre.pressure)
-        side_share = absolute(study.gear.lever()) * peaks.side_force
-        torque = study.requirements.limit_torque_factor * (peaks.aligning_moment + side_share)
+    required = study.requirements
+    if required.limit_event == "simulated":
+        torque = linkage.torsional_stiffness * _disturbed_yaw(required.decay, study, linkage)
+    else:
+        torque = study.loads.limit_torque(study, load=load)
     k_psi, elastic = linkage.torsional_stiffness, study.damper.has_sized_parts()
     yaw = torque / k_psi  # of the linkage, behind the links
     yaw_rate = yaw * sqrt(k_psi / study.gear.yaw_inertia)
@@ -69,8 +69,10 @@ def limit_event(
         arm_moment=0 if linkage.arm_length is None else spring_force * linkage.arm_length,
         spring_force=spring_force,
         spring_energy=factors[1] * factors[4] * torque * yaw / 2,
-        safety_factor=study.requirements.safety_factor,
-        service_stroke=SERVICE * linkage.damper_lever * yaw if elastic else None,
+        safety_factor=required.limit_factor,
+        ultimate_factor=required.ultimate_factor,
+        service_stroke=linkage.damper_lever * study.loads.service_torque(study, load) / k_psi if elastic else None,
+        flight=flight_shares(study, linkage, torque, load) if elastic else None,
         design=design,
     )
 
@@ -91,9 +93,39 @@ def peaks_of(event: LimitEvent) -> tuple[Expr, ...]:
     return event.torque, event.yaw, event.stroke, event.damper_force, event.spring_force
 
 
-def _disturbed_yaw(study: Any, linkage: Linkage) -> Expr:
+def flight_shares(study: Any, linkage: Linkage, torque: Expr, load: Expr) -> FlightStresses:
+    """Torques of a flight over the limit torque: of a turn, of a tow, of the first peak of the transient of landing.
+
+    A tow without towing loads is a turn. The transient is that of the decay requirement, which also says how it dies out;
+    without one it begins at the tyre's own peak and dies out to a third within three cycles.
+
+    Parameters
+    ----------
+    study : Study
+    linkage : Linkage
+    torque : Expr
+        Limit torque [N m].
+    load : Expr
+        Largest vertical load [N].
+    """
+    required, rows = study.requirements, {row.name: row for row in study.loads.table(study, load=load) if not row.off}
+    spectrum, decay = required.fatigue.spectrum, required.decay
+    turning = rows["turning"].limit_torque(required.ultimate_factor) if "turning" in rows else 0.0
+    towing = rows["towing"].limit_torque(required.ultimate_factor) if "towing" in rows else turning
+    if decay is None:
+        peaks = study.tyre.peaks(load, study.tyre.pressure)
+        landing = 0.0 if peaks is None else peaks.aligning_moment + absolute(study.gear.lever()) * peaks.side_force
+        per_cycle = UNSTATED[0] ** (1 / UNSTATED[1])
+    else:
+        landing = linkage.torsional_stiffness * _disturbed_yaw(decay, study, linkage)
+        per_cycle = decay.ratio ** (1 / decay.cycles)
+    return FlightStresses(
+        spectrum.turn_share * turning / torque, spectrum.tow_share * towing / torque, landing / torque, per_cycle
+    )
+
+
+def _disturbed_yaw(decay: Any, study: Any, linkage: Linkage) -> Expr:
     """Yaw angle of the release, or to which the kick leads without any damping."""
-    decay = study.requirements.decay
     if decay.release is not None:
         return absolute(decay.release.yaw_angle)
     return absolute(decay.kick.yaw_rate) / sqrt(linkage.torsional_stiffness / study.gear.yaw_inertia)

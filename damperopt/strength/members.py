@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
-from ..expressions.calculus import Expr, is_symbol, sqrt
+from ..expressions.calculus import Expr, is_symbol, sqrt, where
 from ..ports.linkage import Member, Point
-from ..ports.sizing import LimitEvent, Size
-from .materials import allowable_stress
+from ..ports.sizing import LimitEvent
+from .fatigue import Basquin, FlightStresses, life_damage
+from .materials import allowable_stress, ultimate_stress
 from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
 
 __all__ = [
     "allowables",
     "belleville_mass",
     "distance",
+    "fatigue_ratio",
     "least_sections",
     "member_mass",
-    "member_sizes",
     "root_stress",
     "root_stress_of_force",
 ]
-
-RELAXED = {
-    "limit": ("requirements.limit_torque", "requirements.safety_factor"),
-    "ultimate": ("requirements.limit_torque",),
-    "buckling": ("requirements.limit_torque",),
-}
-"""What would relax each check of a section."""
 
 
 def distance(start: Point, end: Point) -> Expr:
@@ -55,20 +48,35 @@ def member_mass(member: Member, event: LimitEvent, study: Any) -> Expr:
     if member.inertia is not None:
         return member.taper * rho * length * area(section, member.inertia) * with_fittings
     moment = getattr(event, member.load) * length
-    allowable = allowable_stress(study.material, study.requirements.safety_factor)
+    allowable = allowable_stress(study.material, event.safety_factor, event.ultimate_factor)
     return model.cantilever_taper * rho * length * area_for_modulus(section, moment / allowable) * with_fittings
 
 
 def allowables(material: Any, event: LimitEvent) -> dict[str, Expr]:
     """Stress at the limit load that each check allows [Pa]: yield at limit, rupture (of a laminate the strain) at ultimate."""
-    found = {}
-    if material.yield_strength is not None:
-        found["limit"] = material.yield_strength / event.safety_factor
-    if material.ultimate_strength is not None:
-        found["ultimate"] = material.ultimate_strength / event.ultimate_factor
-    if material.design_strain is not None:
-        found["ultimate"] = material.youngs_modulus * material.design_strain / event.ultimate_factor
-    return found
+    found = {"ultimate": ultimate_stress(material) / event.ultimate_factor}
+    return found if material.yield_strength is None else {"limit": material.yield_strength / event.safety_factor, **found}
+
+
+def fatigue_ratio(member: Member, stress: Expr, event: LimitEvent, study: Any) -> Expr:
+    """Stresses of a life over those whose damage, scatter factor included, is 1; None without data or spectrum.
+
+    Parameters
+    ----------
+    member : Member
+        What the damper loads feels the transients of landing alone.
+    stress : Expr
+        At the limit load [Pa].
+    event : LimitEvent
+    study : Study
+    """
+    law = Basquin.of(study.material)
+    if law is None or event.flight is None:
+        return None
+    shares = event.flight
+    turn, tow = (0.0, 0.0) if member.load == "damper_force" else (shares.turn * stress, shares.tow * stress)
+    stresses = FlightStresses(turn, tow, shares.landing * stress, shares.decay)
+    return life_damage(stresses, study.requirements.fatigue.spectrum, law) ** -law.exponent
 
 
 def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, Expr]:
@@ -84,43 +92,28 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     Returns
     -------
     dict of str to Expr
-        ``limit``, ``ultimate``, and for a leg ``buckling``: Euler's load of pinned ends at ultimate.
+        ``limit``, ``ultimate``, ``fatigue``, and for a leg ``buckling``: as a column with pinned ends at ultimate load.
     """
     section, load = getattr(study.mass, member.section), getattr(event, member.load)
     allowed = allowables(study.material, event)
     if member.area is None:
         lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
-        return {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        found = {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        stress = load * lever / section_modulus(section, member.inertia)
+        ratio = fatigue_ratio(member, stress, event, study)
+        return found if ratio is None else found | {"fatigue": member.inertia * ratio ** (4 / 3)}
     force, length = load * member.share, distance(member.start, member.end) if member.length is None else member.length
     kappa_area, _ = shape_numbers(section)
     least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
-    euler = event.ultimate_factor * force / (math.pi**2 * study.material.youngs_modulus)
-    return least | {"buckling": kappa_area * length * sqrt(euler)}
-
-
-def member_sizes(study: Any, design: Mapping[str, Any], event: LimitEvent) -> list[Size]:
-    """Sections of members that are design variables, with the least that strength asks of each.
-
-    Parameters
-    ----------
-    study : Study
-    design : mapping of str to Expr
-    event : LimitEvent
-
-    Returns
-    -------
-    list of Size
-        Named by their variables; members that share one are sized by the first of them.
-    """
-    declared = {variable.name: variable for variable in study.damper.variables()}
-    found: dict[str, Size] = {}
-    for member in study.damper.members(design):
-        if member.variable and member.variable not in found:
-            name, unit = member.variable, declared[member.variable].unit
-            least = least_sections(member, event, study).items()
-            limits = {f"{member.kind}_{check}": (value, RELAXED[check]) for check, value in least}
-            found[name] = Size(name, unit, design[name], limits)
-    return list(found.values())
+    # in the stress of Euler's load, c A: columns that are short yield first (Johnson), tangent to Euler's at half the yield
+    F, c = event.ultimate_factor * force, math.pi**2 * study.material.youngs_modulus / (kappa_area * length) ** 2
+    yields = ultimate_stress(study.material) if study.material.yield_strength is None else study.material.yield_strength
+    euler = sqrt(F / c)
+    column = where(c * euler < yields / 2, euler, F / yields + yields / (4 * c))
+    ratio = fatigue_ratio(member, force / member.area, event, study)
+    if ratio is not None:
+        least["fatigue"] = member.area * ratio
+    return least | {"buckling": column}
 
 
 def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:
@@ -145,5 +138,5 @@ def root_stress_of_force(member: Member, force: Expr, study: Any) -> Expr:
 def belleville_mass(event: LimitEvent, study: Any) -> Expr:
     """Mass of a Belleville stack [kg]: energy over eta sigma^2/(2 E) per volume."""
     steel = study.mass.damper_material
-    sigma = allowable_stress(steel, study.requirements.safety_factor)
+    sigma = allowable_stress(steel, event.safety_factor, event.ultimate_factor)
     return steel.density * event.spring_energy / (study.mass.spring_utilisation * sigma**2 / (2 * steel.youngs_modulus))

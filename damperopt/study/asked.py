@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..strength.limit_event import limit_event
-from ..strength.members import member_sizes
+from ..strength.sizes import member_sizes
 from .variables import Variable
 
 __all__ = ["asked_sizes", "variables_left_out"]

@@ -10,6 +10,7 @@ from ..errors import ConfigError
 from ..gears.base import Gear
 from ..linkages.assembly import assemblies, assembly_type, dampers, layouts
 from ..linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS
+from ..load_cases.base import load_cases
 from ..quantities.kinds import home_of, kinds, one_of, tags_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
@@ -75,6 +76,7 @@ def rooms() -> dict[str, dict[str, type[Any]]]:
         "contact lines": dict(contact_lines()),
         "linkages": dict(layouts()),
         "dampers": dict(dampers()),
+        "load cases": dict(load_cases()),
     }
 
 

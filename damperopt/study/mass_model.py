@@ -9,11 +9,29 @@ from pydantic import model_validator
 from ..ports.section import Section
 from ..quantities.record import Coordinate, Density, Distance, Fraction, Length, Record, Stress, refuse
 from ..quantities.units import Quantity
-from ..strength.materials import Material
+from ..strength.materials import Material, allowable_stress
 
 __all__ = ["MassModel"]
 
 _TUBE = Section(family="tube", thickness_ratio=0.1)
+
+
+_Ratio = Annotated[float, Quantity("1", above=0, example="0.6")]
+
+
+class LugModel(Record):
+    """Eyes at the ends of links, arm and support, in parts of the outer size of the section; typical proportions."""
+
+    bore: _Ratio = 0.6
+    """Of the pin [1]."""
+    thickness: _Ratio = 0.6
+    """[1]"""
+    width: _Ratio = 1.4
+    """[1]"""
+    edge: _Ratio = 0.95
+    """From the middle of the bore to the free end [1]."""
+    fitting_factor: Annotated[float, Quantity("1", at_least=1)] = 1.15
+    """On ultimate loads of lugs; 1.15 is usual [1]."""
 
 
 class MassModel(Record):
@@ -41,6 +59,12 @@ class MassModel(Record):
     """Length of each chamber that the piston does not sweep [m]."""
     wall_allowance: Distance = 2e-3
     """Added to the wall and caps that pressure needs [m]."""
+    lug: LugModel = LugModel()
+    """Eyes and pins, for their margins of safety."""
+    proof_factor: Annotated[float, Quantity("1", at_least=1)] = 1.5
+    """Proof pressure over the peak pressure at limit load [1]."""
+    burst_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
+    """Burst pressure over the peak pressure at limit load [1]."""
     least_rod_diameter: Length = 0.012
     """Thinnest rod that is made [m]."""
     rod_buckling_factor: Annotated[float, Quantity("1", at_least=1)] = 2.0
@@ -61,3 +85,8 @@ class MassModel(Record):
         if self.damper_material.yield_strength is None:
             raise refuse("damper_material", f"'{self.damper_material.name}' has no yield strength", "a metal")
         return self
+
+    def wall_thickness(self, bore: float, limit_factor: float, ultimate_factor: float) -> float:
+        """Wall of the cylinder [m]: p D/(2 sigma) and the allowance, as its mass is reckoned."""
+        sigma = allowable_stress(self.damper_material, limit_factor, ultimate_factor)
+        return float(self.wall_allowance + self.working_pressure * bore / (2 * sigma))

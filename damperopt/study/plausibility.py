@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
+from ..results import ConstraintResult, DesignResult
 from .study import Study
 
-__all__ = ["Implausible", "implausible", "implausible_masses"]
+__all__ = ["Answer", "Implausible", "implausible", "implausible_answer", "implausible_masses"]
 
 GRAVITY = 9.81
+
+_YAW = (5.0, 60.0)
+"""Frequencies of shimmy in yaw [Hz]."""
+
+_DECIDES = 0.1
+"""Per cent of mass for a per cent of a limit, beyond which the limit decides the mass."""
+
+_ROUNDING = 1e-6
+"""Of an optimum that lies on its limit."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +38,7 @@ class Implausible:
         [`unit`]
     unit : str
     usual : tuple of float
-        Ends of the usual range [`unit`].
+        Ends of the usual range [`unit`]; an end may be infinite.
     """
 
     key: str
@@ -39,7 +50,117 @@ class Implausible:
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         low, high = self.usual
-        return f"{self.key}: {self.what} is {self.value:.3g}{unit}; usual: {low:.3g} to {high:.3g}{unit}"
+        usual = f"{low:.3g} to {high:.3g}"
+        if math.isinf(high):
+            usual = f"at least {low:.3g}"
+        if low == -math.inf:
+            usual = f"at most {high:.3g}"
+        return f"{self.key}: {self.what} is {self.value:.3g}{unit}; usual: {usual}{unit}"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Numbers of a design that a practitioner looks at first; what is None is not looked at.
+
+    Attributes
+    ----------
+    parts : mapping of str to float
+        Mass by part [kg].
+    damper_mass, damper_force : float or None
+        Of the damper [kg], and its largest force [N].
+    rod_diameter : float or None
+        [m]
+    working_stroke : float or None
+        To one side, under the service torque [m].
+    yaw_frequencies : sequence of float
+        Of the yaw mode at the speeds and loads of the envelope [Hz].
+    limits : sequence of ConstraintResult
+        Constraints with their shadow prices.
+    """
+
+    parts: Mapping[str, float] = field(default_factory=dict)
+    damper_mass: float | None = None
+    damper_force: float | None = None
+    rod_diameter: float | None = None
+    working_stroke: float | None = None
+    yaw_frequencies: Sequence[float] = ()
+    limits: Sequence[ConstraintResult] = ()
+
+    @classmethod
+    def of(cls, result: DesignResult, yaw_frequencies: Sequence[float] = ()) -> Answer:
+        """Of a result; the frequencies of the yaw mode come beside it."""
+        parts = {} if result.mass is None else result.mass.parts
+        stroke = next((c.value for c in result.constraints if c.name == "working_stroke"), None)
+        damper = parts.get("damper"), result.limit_event.get("damper_force"), result.derived.get("rod_diameter")
+        return cls(parts, *damper, stroke, yaw_frequencies, result.constraints)
+
+
+def implausible_answer(study: Study, answer: Answer) -> list[Implausible]:
+    """What a practitioner would not believe of a design, by number.
+
+    Parameters
+    ----------
+    study : Study
+    answer : Answer
+
+    Returns
+    -------
+    list of Implausible
+        The yaw mode outside 5 to 60 Hz; a damper below 1 kg for more than 5 kN; a rod below 12 mm; a stroke below ten times
+        the apex clearance; a part below 2 % of the whole; a limit of the layout that decides the mass.
+    """
+    numbers = [*_of_yaw_mode(answer), *_of_damper(study, answer), *_of_shares(answer), *_of_limits(study, answer)]
+    return [number for number in numbers if not number.usual[0] <= number.value <= number.usual[1]]
+
+
+def _of_yaw_mode(answer: Answer) -> Iterator[Implausible]:
+    if answer.yaw_frequencies:
+        for which, frequency in (("least", min(answer.yaw_frequencies)), ("largest", max(answer.yaw_frequencies))):
+            yield Implausible("design", f"the {which} frequency of the yaw mode", frequency, "Hz", _YAW)
+
+
+def _of_damper(study: Study, answer: Answer) -> Iterator[Implausible]:
+    mass, force = answer.damper_mass, answer.damper_force
+    if mass is not None and force is not None and force > 5e3:
+        yield Implausible("mass", f"the mass of a damper for {force / 1e3:.3g} kN", mass, "kg", (1.0, math.inf))
+    if answer.rod_diameter is not None:
+        thin = (12.0 * (1 - _ROUNDING), math.inf)
+        yield Implausible("mass.least_rod_diameter", "the damper's rod", 1e3 * answer.rod_diameter, "mm", thin)
+    if answer.working_stroke is not None and study.requirements is not None:
+        clearances = answer.working_stroke / study.requirements.apex_clearance
+        what = "the working stroke over the clearance of the apex"
+        yield Implausible("requirements.stroke_ratio", what, clearances, "1", (10.0 * (1 - _ROUNDING), math.inf))
+
+
+def _of_shares(answer: Answer) -> Iterator[Implausible]:
+    total = sum(answer.parts.values())
+    for part, mass in answer.parts.items():
+        yield Implausible("mass", f"the share of the part '{part}'", 100 * mass / total, "%", (2.0, math.inf))
+
+
+def _of_limits(study: Study, answer: Answer) -> Iterator[Implausible]:
+    total = sum(answer.parts.values())
+    for limit in answer.limits:
+        if limit.kind not in ("geometry", "bound") or not limit.active or not total:
+            continue
+        unlisted = [key for key in limit.relaxed_by if _at_default(study, key)]
+        left = f", with {' and '.join(unlisted)} at the default" if unlisted else ""
+        what = (
+            f"the limit '{limit.name}' ({limit.limit:.4g} {limit.unit}) has a price of {limit.shadow_price:+.3g} kg per "
+            f"{limit.unit}{left}: per cent of mass for a per cent of it"
+        )
+        key = next(iter((*unlisted, *limit.relaxed_by)), "design")
+        yield Implausible(key, what, abs(limit.shadow_price * limit.limit) / total, "1", (-math.inf, _DECIDES))
+
+
+def _at_default(study: Study, path: str) -> bool:
+    """Whether a number of the study is what it is without being given."""
+    *blocks, leaf = path.split(".")
+    record: Any = study
+    for key in blocks:
+        record = getattr(record, key, None)
+    declared = getattr(type(record), "model_fields", {}).get(leaf)
+    return declared is not None and not declared.is_required() and getattr(record, leaf) == declared.default
 
 
 def implausible(study: Study, design: Mapping[str, float] | None = None) -> list[Implausible]:
@@ -111,7 +232,7 @@ def _of_gear(study: Study) -> Iterator[Implausible]:
 
 
 def _of_frequencies(study: Study, design: Mapping[str, float] | None) -> Iterator[Implausible]:
-    gear, usual = study.gear, (5.0, 60.0)
+    gear, usual = study.gear, _YAW
     lateral = getattr(gear, "lateral", None)
     if lateral is not None and lateral.stiffness:
         frequency = math.sqrt(lateral.stiffness / lateral.inertia) / (2 * math.pi)

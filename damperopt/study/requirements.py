@@ -20,6 +20,7 @@ from ..quantities.record import (
 )
 from ..quantities.units import Quantity
 from ..reading import quoted
+from ..strength.fatigue import Spectrum
 from .disturbances import Disturbance, Kick, Release
 
 __all__ = ["DecayRequirement", "Fatigue", "Requirements"]
@@ -53,6 +54,9 @@ _Ratio = Annotated[
 ]
 
 
+_Factor = Annotated[float, Quantity("1", at_least=1, example="1.5")]
+
+
 class Fatigue(Record):
     """Fatigue life of the bending arm: `cycles` at `stress_fraction` of the limit-event stress (Basquin)."""
 
@@ -60,6 +64,8 @@ class Fatigue(Record):
     """Amplitude of the repeated stress, as a part of that of the limit event [1]."""
     cycles: Annotated[float, Quantity("1", at_least=1)] = 1e6
     """Cycles to be survived [1]."""
+    spectrum: Spectrum = Spectrum()
+    """What a flight brings, and how many flights."""
 
 
 class DecayRequirement(Record):
@@ -96,6 +102,8 @@ class Requirements(Record):
 
     stability_margin: Rate
     """Spectral abscissa <= -stability_margin at every speed and load [1/s]."""
+    damping_ratio: Annotated[float, Quantity("1", above=0, below=1, example="0.05")] | None = None
+    """Least damping ratio of the yaw mode at every speed and load [1]; left out: none is asked for."""
     decay: DecayRequirement | None = None
     """On the nonlinear model, at every speed and load, after a release or a kick."""
     limit_event: Literal["torque", "simulated"] = "torque"
@@ -104,14 +112,21 @@ class Requirements(Record):
     """Yaw torque of the limit event [N m]; left out: limit_torque_factor times the tyre's peak moment."""
     limit_torque_factor: Number = 1.5
     """Limit torque over the peak that the tyre can make, where no limit_torque is given [1]."""
-    safety_factor: Annotated[float, Quantity("1", at_least=1)] = 1.5
-    """On yield strength at the limit event."""
+    limit_factor: _Factor = 1.0
+    """On yield strength at limit load [1]."""
+    safety_factor: _Factor | None = Field(None, exclude=True)
+    """An older name of limit_factor."""
+    ultimate_factor: _Factor = 1.5
+    """Ultimate over limit load [1], as 14 CFR 25.303 has it: on ultimate strength, buckling, a laminate's design strain."""
     fatigue: Fatigue = Fatigue()
     """Fatigue of the bending arm."""
     apex_clearance: Length = 0.127e-3
     """Free clearance at the apex joint [m]; 0.127 mm is the figure of a 737."""
     stroke_ratio: Number = 10.0
     """Least ratio of the damper's working stroke at the limit event to the apex clearance."""
+    service_torque: Torque | None = None
+    """Yaw torque of everyday turns, under which the damper has its working stroke [N m]; left out: a quarter of the largest
+    static yaw torque of the rules at the largest load of the envelope."""
     lug_distance: LengthRange
     """Allowed distance between the strut lugs, 2 L cos(gamma) [m]."""
     reach: LengthRange
@@ -120,6 +135,15 @@ class Requirements(Record):
     """Most that a damper across the apex may be long, pin to pin, where no other length of the layout limits it [m]."""
     tyre_clearance: Distance = 0.05
     """Least height of the apex above the top of the tyre [m]."""
+
+    @model_validator(mode="after")
+    def _factor_by_its_older_name(self) -> Self:
+        given = {key: getattr(self, key) for key in ("limit_factor", "safety_factor") if key in self.model_fields_set}
+        if len(set(given.values())) > 1:
+            raise refuse("safety_factor", "another number than limit_factor", "limit_factor alone")
+        factor = next(iter(given.values()), self.limit_factor)
+        self.__dict__.update(limit_factor=factor, safety_factor=factor)  # frozen for everyone else
+        return self
 
     @model_validator(mode="after")
     def _motions_to_size_by(self) -> Self:

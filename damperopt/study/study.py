@@ -23,9 +23,11 @@ from .asked import variables_left_out
 from .changes import changed
 from .components import DAMPER, GEAR, TYRE
 from .envelope import Envelope
+from .loads import GroundLoads
 from .mass_model import MassModel
 from .requirements import Requirements
 from .solver import Solver
+from .stock import CATALOGUE, Available
 from .variables import Design, Variable
 
 __all__ = ["Study", "unit_of"]
@@ -48,6 +50,12 @@ class Study(Record):
     """Speeds and loads at which the requirements hold."""
     requirements: Requirements | None = None
     """What a design must meet; needed where there is something to design."""
+    loads: GroundLoads = GroundLoads()
+    """Loads of landing and ground handling, and which load cases count."""
+    available: Available | None = None
+    """Sizes that exist: tubes, walls, bores; left out: any."""
+    catalogue: CATALOGUE | None = None
+    """Dampers that can be bought: the path of a CSV file, seen from this one, or its rows; left out: one is made."""
     design: Design = Design()
     """Bounds and starts of the design variables."""
     mass: MassModel = MassModel()
@@ -71,17 +79,13 @@ class Study(Record):
         if names:
             if self.requirements is None:
                 raise refuse("requirements", "missing key", f"the block requirements, which topology '{topology}' needs")
-            if self.requirements.limit_torque is None and not self._tyre_has_a_peak():
+            if not float(self.loads.limit_torque(self)) > 0:
                 raise refuse(
                     "requirements.limit_torque",
                     "missing key",
-                    f"a torque: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
+                    f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
-
-    def _tyre_has_a_peak(self) -> bool:
-        peaks = self.tyre.peaks(max(self.envelope.loads), self.tyre.pressure)
-        return peaks is not None and bool(peaks.side_force or peaks.aligning_moment)
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:
@@ -143,6 +147,8 @@ class Study(Record):
         data = self.model_dump(exclude_none=True)
         if "gear__order" in changes:  # an older way to name the kind, which would contradict it
             data["gear"].pop("kind")
+        if "requirements__safety_factor" in changes:  # an older name, which the new one would contradict
+            data["requirements"].pop("limit_factor")
         topology = changes.get("damper__topology")
         if "damper__kind" not in changes and topology and f"{topology} {data['damper']['kind']}" not in assemblies():
             data["damper"].pop("kind")  # it does not go with the new layout, which has a kind of its own

@@ -9,7 +9,7 @@ import pytest
 from beside import ROOT, TOY, environment
 
 HERE = Path(__file__).parent
-TAGS = {"saturating", "root", "two_lags", "steering_collar", "a_frame", "gas", "quintic"}
+TAGS = {"saturating", "root", "two_lags", "steering_collar", "a_frame", "gas", "quintic", "slipped_jack"}
 AXES = {
     "gas": "--x w=0.1:1 --y k_gas=0:1e6",
     "quintic": "--x c_lambda=100:1e5 --y A_leg=1e-6:1e-3",

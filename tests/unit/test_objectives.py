@@ -88,7 +88,7 @@ def test_arreaza_part_by_part(main_gear):
     diameter = (1e-6 / TUBE_INERTIA) ** 0.25
     stress = TORQUE / ell * ell * (diameter / 2) / 1e-6  # root moment of the tip force T/ell on an arm of length ell
     assert values["arm_stress"] == pytest.approx((stress, STEEL["sigma"]), rel=ROUNDING)
-    assert values["arm_fatigue"] == pytest.approx((stress / 2, 1655e6 * 2e6**-0.076), rel=ROUNDING)
+    assert values["arm_fatigue"] == pytest.approx((stress / 2, 1758e6 * 2e6**-0.0977), rel=ROUNDING)
     assert values["damper_length"] == pytest.approx((0.18, 3 * stroke + 0.12 + bore), rel=ROUNDING)
     assert values["working_stroke"] == pytest.approx((stroke, 1.27e-3), rel=ROUNDING)
     assert values["tyre_clearance"] == pytest.approx((0.55 * math.cos(0.6) - 0.362, 0.05), rel=1e-11)
@@ -117,7 +117,7 @@ def test_laminate_is_sized_by_strain_and_given_torque_replaces_the_derived_one(m
     problem = DesignProblem(study)
     design = study.start
     assert problem.limit_event(design)["linkage_torque"] == 10e3
-    assert problem.values(design)["arm_stress"][1] == pytest.approx(140e9 * 0.0045)
+    assert problem.values(design)["arm_stress"][1] == pytest.approx(140e9 * 0.0045 / 1.5)  # at ultimate load
     assert "arm_fatigue" not in problem.values(design)  # no Basquin data
 
 

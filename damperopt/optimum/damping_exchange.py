@@ -1,0 +1,133 @@
+"""Damping ratio of the yaw mode over the envelope: where it is least, and cuts that hold it from round to round.
+
+The ratio -Re(s)/|s| of an eigenvalue has the gradient of the eigenvalue, ds/dp = w (dA/dp) v with w v = 1, exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..stability.yaw_mode import yaw_mode, yaw_modes
+from .cuts import Cut, about
+from .problem import DesignProblem
+
+__all__ = ["DampingHold", "DampingPoint", "least_damping"]
+
+SPEEDS = 40
+"""Of the first look, at each load."""
+
+NEAR = 1.3
+"""Dips of the damping ratio below this multiple of the least are held from the start."""
+
+SAME_SPEED = 0.05
+"""Two dips closer than this part of the larger speed are one that has moved."""
+
+LEARNING_STEP = 1e-5
+"""Step below which the difference of two gradients shows their rounding and no curvature."""
+
+
+@dataclass(frozen=True)
+class DampingPoint:
+    """Damping ratio of the yaw mode at a speed [m/s] and a load [N]."""
+
+    speed: float
+    load: float
+    ratio: float
+
+
+def least_damping(problem: DesignProblem, design: Mapping[str, float]) -> list[DampingPoint]:
+    """Dips of the damping ratio of the yaw mode over the speed, the least first; a yaw that does not oscillate has none.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    design : mapping of str to float
+        Design variables by name [SI].
+    """
+    gear, envelope = problem.model.at(design), problem.study.envelope
+    low, high, found = envelope.speed.min, envelope.speed.max, list[DampingPoint]()
+
+    def ratio(speed: float, load: float) -> float:
+        s = yaw_modes(gear, speed, load)[0]
+        return 1.0 if np.isnan(s) else float(-s.real / abs(s))
+
+    for load in envelope.loads:
+        speeds = np.unique(np.clip(np.geomspace(low, high, SPEEDS), low, high))
+        heights = [ratio(float(V), load) for V in speeds]
+        for i, V in enumerate(speeds):
+            left, right = max(i - 1, 0), min(i + 1, len(speeds) - 1)
+            if heights[i] > min(heights[left], heights[right]):
+                continue
+            point = DampingPoint(float(V), load, heights[i])
+            if left < right:
+                bounds = (speeds[left], speeds[right])
+                at = lambda V, load=load: ratio(float(V), load)  # noqa: E731
+                best = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-6 * high, "maxiter": 20})
+                point = min(point, DampingPoint(float(best.x), load, float(best.fun)), key=lambda p: p.ratio)
+            found.append(point)
+    return sorted(found, key=lambda point: point.ratio)
+
+
+class DampingHold:
+    """Where the damping ratio is held, from round to round.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        Of a study that asks for a damping ratio.
+    most : int
+        Points that a program has room for.
+    """
+
+    def __init__(self, problem: DesignProblem, most: int):
+        self._problem, self._most = problem, most
+        model = problem.model
+        design, speed, load = ca.SX.sym("design", len(problem.design_names)), ca.SX.sym("V"), ca.SX.sym("F_z")
+        A = model.state_matrix(design, speed, load, ca.DM(problem.data))
+        self._slopes = ca.Function("slopes", [design, speed, load], [A, ca.densify(ca.jacobian(ca.vec(A), design))])
+        self._angle, self._rate = (model.state_names.index(name) for name in ("yaw_angle", "yaw_rate"))
+        self._held, self._last = list[tuple[float, float]](), list[Cut]()
+
+    @property
+    def required(self) -> float:
+        """Least damping ratio."""
+        ratio = self._problem.study.required.damping_ratio
+        assert ratio is not None
+        return ratio
+
+    def worst(self, design: Mapping[str, float]) -> list[DampingPoint]:
+        """Dips of the damping ratio; the low ones are held from now on."""
+        dips = least_damping(self._problem, design)
+        for dip in [p for p in dips if p.ratio <= NEAR * max(dips[0].ratio, self.required)][: self._most]:
+            self._held = [held for held in self._held if not _same((dip.speed, dip.load), held)]
+            self._held = [*self._held, (dip.speed, dip.load)][-self._most :]
+        return dips
+
+    def cuts(self, design: Mapping[str, float]) -> list[Cut]:
+        """1 - ratio/required at the held points about `design`: at most 0 is required."""
+        numbers = []
+        values = np.array([design[name] for name in self._problem.design_names])
+        for speed, load in self._held:
+            A, slopes = (found.full() for found in self._slopes(values, speed, load))
+            s, v, w = yaw_mode(A, self._angle, self._rate)
+            if np.isnan(s):  # nothing oscillates: met, with room
+                numbers.append((speed, load, math.exp(-1), np.zeros(values.size)))
+                continue
+            n = len(A)
+            ds = np.array([w @ column.reshape(n, n, order="F") @ v for column in slopes.T]) * values
+            ratio = -s.real / abs(s)
+            slope = -ds.real / abs(s) + s.real * (s.conjugate() * ds).real / abs(s) ** 3
+            numbers.append((speed, load, math.exp(1 - ratio / self.required), -slope / self.required))
+        before = [next((c for c in self._last if _same(n[:2], (c.speed, c.load))), None) for n in numbers]
+        self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
+        return self._last
+
+
+def _same(point: tuple[float, float], held: tuple[float, float]) -> bool:
+    return point[1] == held[1] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])

@@ -1,0 +1,62 @@
+"""The yaw mode of a gear: the oscillation in which the piston takes the largest part."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .linear import LinearGear
+
+__all__ = ["yaw_mode", "yaw_modes"]
+
+
+def yaw_mode(A: np.ndarray, angle: int, rate: int) -> tuple[complex, np.ndarray, np.ndarray]:
+    """Eigenvalue of the yaw mode with its right and left eigenvectors.
+
+    Parameters
+    ----------
+    A : ndarray
+        (n, n) state matrix.
+    angle, rate : int
+        Positions of the yaw angle and its rate.
+
+    Returns
+    -------
+    tuple
+        s, v, w with A v = s v, w A = s w and w v = 1; s is nan where nothing oscillates.
+    """
+    roots, right = np.linalg.eig(A)
+    left = np.linalg.inv(right)
+    # participation of both states of yaw, which no unit of a state changes
+    part = np.abs(right[angle] * left[:, angle]) + np.abs(right[rate] * left[:, rate])
+    part[roots.imag <= 0] = -1.0
+    i = int(part.argmax())
+    s = complex(roots[i]) if part[i] >= 0 else complex(np.nan, np.nan)
+    return s, right[:, i], left[i]
+
+
+def yaw_modes(gear: LinearGear, speeds: Any, loads: Any) -> np.ndarray:
+    """Eigenvalues of the yaw mode.
+
+    Parameters
+    ----------
+    gear : LinearGear
+    speeds, loads : array_like
+        (m,) or scalar [m/s], [N].
+
+    Returns
+    -------
+    ndarray
+        (m,) [1/s]; nan where the yaw does not oscillate.
+
+    Examples
+    --------
+    >>> import damperopt
+    >>> gear = damperopt.linear_gear(damperopt.load("configs/nose_gear_thota.yaml"))
+    >>> s = yaw_modes(gear, [40.0], 150e3)[0]
+    >>> round(s.real, 3), round(s.imag, 2)
+    (1.32, 70.88)
+    """
+    angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
+    return np.array([yaw_mode(A, angle, rate)[0] for A in gear.matrices(speeds, loads)])

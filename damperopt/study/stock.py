@@ -1,0 +1,251 @@
+"""What can be bought or made: stock sizes of a study, and a catalogue of dampers from a CSV file with units in its header."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, ValidationError, ValidationInfo, model_validator
+from pydantic_core import CoreSchema
+
+from ..errors import ConfigError
+from ..quantities.record import Damping, Force, Length, Name, Record, SeriesStiffness, quantity_of, refuse
+from ..quantities.units import Quantity, number
+from ..reading import printable, quoted, text_of
+
+__all__ = ["CATALOGUE", "Available", "CatalogueDamper", "Judged", "judged", "read_catalogue"]
+
+MOST_ROWS = 10_000
+
+
+class Available(Record):
+    """Sizes that exist; after the continuous optimum the lightest design of these is sought."""
+
+    tube_diameters: list[Length] = []  # noqa: RUF012  # frozen, and copied by pydantic
+    """Outer diameters of tubes [m]; left out: any."""
+    walls: list[Length] = []  # noqa: RUF012
+    """Walls of tubes [m]; each goes with each diameter that it leaves a bore."""
+    bores: list[Length] = []  # noqa: RUF012
+    """Bores of cylinders [m]; left out: any."""
+
+    @model_validator(mode="after")
+    def _sizes(self) -> Self:
+        for key in type(self).model_fields:
+            sizes = getattr(self, key)
+            for position, size in enumerate(sizes):
+                if size in sizes[:position]:
+                    raise refuse(f"{key}.{position}", f"{size:g} m twice", "different sizes")
+        if bool(self.tube_diameters) != bool(self.walls):
+            given, other = ("tube_diameters", "walls") if self.tube_diameters else ("walls", "tube_diameters")
+            raise refuse(given, f"without {other}", "both, or neither")
+        if self.walls and 2 * min(self.walls) >= max(self.tube_diameters):
+            raise refuse("walls", "no wall leaves a bore in any diameter", "a wall below half a diameter")
+        if not (self.walls or self.bores):
+            raise refuse("", "no sizes", "tube_diameters and walls, bores, or all three")
+        return self
+
+
+class _RowsOrFile:
+    """JSON Schema of rows, or of the path of a file that has them."""
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string", "minLength": 1}, handler(schema)]}
+
+
+class CatalogueDamper(Record):
+    """A damper that can be bought: a row of the catalogue."""
+
+    name: Name
+    """Part number."""
+    c: Damping
+    """Linear damping [N s/m]."""
+    stroke: Length
+    """Usable stroke to one side of the middle [m]."""
+    length: Length
+    """From pin to pin at the middle of the stroke [m]."""
+    force: Force
+    """Largest force at limit load [N]."""
+    mass: Annotated[float, Quantity("kg", above=0, example="3.2 kg")]
+    """With its fluid [kg]."""
+    series_stiffness: SeriesStiffness
+    """Of oil column, rod and eyes [N/m]."""
+
+
+def _from_file(found: Any, info: ValidationInfo) -> Any:
+    """A path, seen from the folder of the study, as the rows of its file."""
+    if not isinstance(found, str):
+        return found
+    folder = (info.context or {}).get("folder", ".")
+    try:
+        return read_catalogue(Path(folder) / found)
+    except ConfigError as error:
+        first, *rest = error.problems
+        what, _, allowed = first.partition("; allowed: ")
+        more = f" (and {len(rest)} more)" if rest else ""
+        raise refuse("", what + more, allowed) from None
+
+
+def _each_once(rows: list[CatalogueDamper]) -> list[CatalogueDamper]:
+    names = [row.name for row in rows]
+    for position, name in enumerate(names):
+        if name in names[:position]:
+            raise refuse(f"{position}.name", f"{quoted(name)} twice", "each damper once")
+    if not rows:
+        raise refuse("", "no dampers", "one row, or more")
+    return rows
+
+
+CATALOGUE: Any = Annotated[list[CatalogueDamper], BeforeValidator(_from_file), AfterValidator(_each_once), _RowsOrFile()]
+"""Field of a study: rows, or the path of a CSV file that has them."""
+
+
+def read_catalogue(path: str | Path) -> list[CatalogueDamper]:
+    """Dampers of a CSV file.
+
+    Parameters
+    ----------
+    path : str or Path
+        First a header such as ``name, c [N s/m], stroke [mm], ...`` with every field of `CatalogueDamper`, in any order; lines
+        that begin with # are remarks.
+
+    Returns
+    -------
+    list of CatalogueDamper
+
+    Raises
+    ------
+    ConfigError
+        With one message per problem, each ``file:line: column: what; allowed: ...``.
+    """
+    file = printable(path)
+    lines = [
+        (position, line)
+        for position, line in enumerate(text_of(path, "a readable CSV file").split("\n"), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise ConfigError(f"{file}:1: no header; allowed: {_header()}")
+    (first, header), *rows = lines
+    units = _columns(header, f"{file}:{first}")
+    if not rows:
+        raise ConfigError(f"{file}:{first}: no dampers; allowed: one row below the header, or more")
+    if len(rows) > MOST_ROWS:
+        raise ConfigError(f"{file}:{first}: {len(rows)} rows; allowed: at most {MOST_ROWS}")
+    dampers: list[CatalogueDamper] = []
+    problems: list[str] = []
+    seen: dict[str, int] = {}
+    for position, row in rows:
+        try:
+            damper = _row(row, units, f"{file}:{position}")
+            if damper.name in seen:
+                found = f"{quoted(damper.name)} stands on line {seen[damper.name]} too"
+                raise ConfigError(f"{file}:{position}: name: {found}; allowed: each damper once")
+            seen[damper.name] = position
+            dampers.append(damper)
+        except ConfigError as error:
+            problems += error.problems
+    if problems:
+        raise ConfigError(problems)
+    return dampers
+
+
+def _header() -> str:
+    fields = CatalogueDamper.model_fields
+    quantities = {key: quantity_of(field.annotation, field.metadata) for key, field in fields.items()}
+    return "the header " + ", ".join(f"{key} [{q.unit}]" if q else key for key, q in quantities.items())
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+
+
+def _columns(header: str, where: str) -> dict[str, str]:
+    """Unit of each column, in their order; empty for the name."""
+    units: dict[str, str] = {}
+    for cell in _cells(header):
+        match = re.fullmatch(r"(\w+)\s*(?:\[(.+)\])?", cell)
+        key, unit = (match[1], match[2] or "") if match else (cell, "")
+        field = CatalogueDamper.model_fields.get(key)
+        if field is None or key in units:
+            what = "stands twice" if key in units else "is no column"
+            raise ConfigError(f"{where}: {quoted(cell)} {what}; allowed: {_header()}")
+        quantity = quantity_of(field.annotation, field.metadata)
+        if quantity is not None and not unit:
+            raise ConfigError(f"{where}: {key}: no unit; allowed: {key} [{quantity.unit}], or another unit of that dimension")
+        if quantity is None and unit:
+            raise ConfigError(f"{where}: {key}: a unit; allowed: {key} alone")
+        units[key] = unit
+    if missing := [key for key in CatalogueDamper.model_fields if key not in units]:
+        raise ConfigError(f"{where}: {missing[0]}: missing column; allowed: {_header()}")
+    return units
+
+
+def _row(line: str, units: dict[str, str], where: str) -> CatalogueDamper:
+    cells = _cells(line)
+    if len(cells) != len(units):
+        raise ConfigError(f"{where}: {len(cells)} cells; allowed: {len(units)}, as the header has")
+    block: dict[str, str] = {}
+    problems = []
+    for (key, unit), cell in zip(units.items(), cells, strict=True):
+        if unit and number(cell) is None:
+            problems.append(f"{where}: {key}: {quoted(cell)} is no number; allowed: a number, in {unit} as the header says")
+        block[key] = f"{cell} {unit}" if unit else cell
+    if problems:
+        raise ConfigError(problems)
+    try:
+        return CatalogueDamper.model_validate(block)
+    except ValidationError as error:
+        raise ConfigError([f"{where}: {e['loc'][0]}: {e['msg']}" for e in error.errors(include_url=False)]) from None
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A damper of the catalogue, and why it does not fit; empty where it does."""
+
+    damper: CatalogueDamper
+    why_not: tuple[str, ...] = ()
+
+
+def judged(
+    catalogue: Iterable[CatalogueDamper],
+    *,
+    force: float = 0.0,
+    stroke: float = 0.0,
+    most_length: float = float("inf"),
+    damping: Sequence[float] = (0.0, float("inf")),
+) -> tuple[Judged, ...]:
+    """Every damper of a catalogue, those that fit first, the lightest first; and why the others do not.
+
+    Parameters
+    ----------
+    catalogue : iterable of CatalogueDamper
+    force : float
+        Largest damper force at limit load [N].
+    stroke : float
+        Largest stroke to one side [m].
+    most_length : float
+        Room from pin to pin [m].
+    damping : sequence of float
+        Least and largest c that are worth a solution [N s/m].
+
+    Returns
+    -------
+    tuple of Judged
+    """
+
+    def reasons(row: CatalogueDamper) -> tuple[str, ...]:
+        least, most = damping
+        found = (
+            (row.force < force, f"carries {row.force / 1e3:.4g} of {force / 1e3:.4g} kN"),
+            (row.stroke < stroke, f"has {1e3 * row.stroke:.4g} of {1e3 * stroke:.4g} mm of stroke"),
+            (row.length > most_length, f"is {1e3 * row.length:.4g} mm long in a room of {1e3 * most_length:.4g} mm"),
+            (not least <= row.c <= most, f"damps with {row.c:.4g} N s/m, outside {least:.4g} to {most:.4g}"),
+        )
+        return tuple(words for fails, words in found if fails)
+
+    all_of_them = (Judged(row, reasons(row)) for row in catalogue)
+    return tuple(sorted(all_of_them, key=lambda one: (bool(one.why_not), one.damper.mass)))

@@ -152,11 +152,25 @@ class Study(Record):
         topology = changes.get("damper__topology")
         if "damper__kind" not in changes and topology and f"{topology} {data['damper']['kind']}" not in assemblies():
             data["damper"].pop("kind")  # it does not go with the new layout, which has a kind of its own
+        if topology:
+            data["damper"] = _in_layout(data["damper"], topology)
         data = changed(data, {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)
         except ValidationError as error:
             raise ConfigError([_problem_in_words(problem) for problem in error.errors(include_url=False)]) from None
+
+
+def _in_layout(block: dict[str, Any], topology: str) -> dict[str, Any]:
+    """A block `damper` without the blocks of words alone, such as the form of a part, that another layout does not know."""
+    known = {key for name, made in assemblies().items() if name.split()[0] == topology for key in made.model_fields}
+    if not known:
+        return block
+
+    def of_words(value: Any) -> bool:
+        return isinstance(value, dict) and all(isinstance(inner, str) for inner in value.values())
+
+    return {key: value for key, value in block.items() if key in known or not of_words(value)}
 
 
 def _problem_in_words(problem: Any) -> str:

@@ -83,7 +83,7 @@ def test_every_figure_has_words_and_every_table_can_be_reached_by_keyboard(page)
 def test_says_first_what_the_proof_covers_and_what_not(solved, page):
     text = plain(page.read_text())
     top = text[: text.index("What was asked")]
-    assert "joints in contact (no freeplay, no end stop reached), no friction, rigid torque links" in top
+    assert "joints in contact (no freeplay, no end stop reached), no friction, rigid: torque links" in top
     for sentence in solved[1].not_checked:
         assert sentence in top
     assert "This page repeats result.json as it was found" in text
@@ -99,7 +99,8 @@ def test_says_what_of_the_study_the_proof_leaves_out(solved):
     assert "freeplay and friction, which the certificate does not cover: a limit cycle can remain" in left_out
     assert "no load of ground handling remains" in event
     soft = study.replace(damper__link_stiffness=1e7, damper__series_stiffness=1e8)
-    assert "torque links as stiff as the study says, the damper's compliance in series" in covers(soft)[0]
+    assert "as stiff as the study says: torque links, oil column and rod" in covers(soft)[0]
+    assert "elastic by their sections: torque links, support" in covers(study.replace(damper__compliance="sized"))[0]
 
 
 def test_says_loads_sizes_damping_and_the_next_critical_speed(solved, page):

@@ -284,7 +284,7 @@ def test_design_of_a_result_is_simulated(name, call, configs, tmp_path, optimum)
 
 def test_design_brings_its_layout(call, configs, tmp_path, optimum):
     """A Boeing design on a study of another layout is simulated as Boeing: k_lambda, not I_arm."""
-    done = call("simulate", configs / "thesis_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
+    done = call("simulate", configs / "main_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
     assert done.code == 0, done.err
     found = read(tmp_path / "out")
     assert found.motion["design"] == optimum.result.design

@@ -3,10 +3,10 @@
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import jsonschema
@@ -168,14 +168,12 @@ def test_bad_calls_end_with_code_2_and_one_message(arguments, says, configs, tmp
 def test_interrupt_leaves_nothing_half_written(configs, tmp_path):
     text = (configs / "minimal.yaml").read_text() + "solver: {starts: 2000}\n"
     (tmp_path / "long.yaml").write_text(text)
-    command = [sys.executable, "-c", "from damperopt.cli import main; main()", "optimise", "long.yaml"]
+    often = "from damperopt.commands import shared; shared.SECONDS_A_LINE = 0.2"
+    command = [sys.executable, "-c", f"{often}; from damperopt.cli import main; main()", "optimise", "long.yaml"]
     process = subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
-    while not (tmp_path / "runs").exists():  # the run has begun
-        assert process.poll() is None
-        time.sleep(0.1)
-    time.sleep(8)  # until the workers have started
+    assert any(re.search(r": [1-9]\d* of 2000", line) for line in process.stderr)  # the workers are at work
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
     _, error = process.communicate(timeout=60)
     assert process.returncode == 130

@@ -24,7 +24,7 @@ COMMAND = [sys.executable, "-c", "from damperopt.cli import main; main()", "repo
 
 @pytest.fixture(scope="module")
 def solved(request):
-    study = damperopt.load(request.config.rootpath / "configs" / "main_gear.yaml").replace(solver__starts=4)
+    study = damperopt.load(request.config.rootpath / "configs" / "main_gear.yaml").replace(solver__starts=2)
     return study, damperopt.optimise(study)
 
 
@@ -135,6 +135,7 @@ def browser():
     return run
 
 
+@pytest.mark.slow
 def test_opens_in_a_browser(page, browser, tmp_path):
     picture = tmp_path / "page.png"
     browser(f"--screenshot={picture}", "--window-size=900,1200", page.as_uri())
@@ -143,6 +144,7 @@ def test_opens_in_a_browser(page, browser, tmp_path):
     assert 0.01 < (pixels.min(axis=2) < 0.5).mean() < 0.5  # there is writing, and it is not a black page
 
 
+@pytest.mark.slow
 def test_on_paper_the_study_is_unfolded(page, browser, tmp_path):
     """What is folded on the screen has a copy for paper: the printed page is longer by the study than without it."""
     without = tmp_path / "without.html"
@@ -154,6 +156,7 @@ def test_on_paper_the_study_is_unfolded(page, browser, tmp_path):
     assert pages[0] > pages[1] > 2
 
 
+@pytest.mark.slow
 def test_figures_that_are_not_there_are_drawn(page, tmp_path):
     there = ["linkage.svg", "modes.svg", "region.svg", "decay.svg", "tornado.svg"]
     for name in ("result.json", *there):
@@ -164,6 +167,7 @@ def test_figures_that_are_not_there_are_drawn(page, tmp_path):
     assert {f.name for f in tmp_path.iterdir()} == {"report.html", "result.json", *there}
 
 
+@pytest.mark.slow
 def test_no_design_says_what_is_missing(main_gear, tmp_path):
     study = main_gear.replace(damper__topology="boeing", solver__starts=1, requirements__stability_margin=2.0)
     result = damperopt.optimise(study)

@@ -403,6 +403,7 @@ def test_a_motion_that_stops_at_once_is_an_answer(main_gear):
     assert (found.kind, found.cycles, found.decay_ratio) == ("diverging", 0.0, None)
 
 
+@pytest.mark.slow
 def test_exact_engine_shows_every_cycle_of_a_long_motion(main_gear):
     """20 s at 50 Hz: as many cycles as the smooth engine counts, not 2000 points' worth."""
     study, release = main_gear.replace(gear__order=3), {"release": {"yaw_angle": 1e-3}}

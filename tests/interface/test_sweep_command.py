@@ -12,6 +12,7 @@ from sweep_tools import COMMAND
 from damperopt.output.staging import lock, unlock
 
 
+@pytest.mark.slow
 def test_command_writes_dataset_table_and_figure_and_goes_on(file, tmp_path, call):
     done = subprocess.run([*COMMAND, file, "-o", tmp_path / "out"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

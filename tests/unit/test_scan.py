@@ -19,14 +19,14 @@ def problem(request, main_gear):
 
 def test_screening_agrees_with_eigenvalues(main_gear):
     rng = np.random.default_rng(2)
-    k, c = 10 ** rng.uniform(4.5, 6.5, 400), 10 ** rng.uniform(1.5, 5, 400)
+    k, c = 10 ** rng.uniform(4.5, 6.5, 150), 10 ** rng.uniform(1.5, 5, 150)
     least = Screening(main_gear).least_conditions(k, c)
     speeds = np.geomspace(5, 100, 24)
     for i in range(k.size):
         plain = {"topology": "rotational", "torsional_stiffness": k[i], "torsional_damping": c[i]}
         worst = damperopt.linear_gear(main_gear.replace(damper=plain)).abscissa(speeds, 150e3).max()
         assert (least[i] > 0) == (worst < -0.1)
-    assert 20 < np.sum(least > 0) < 380
+    assert 15 < np.sum(least > 0) < 135
 
 
 def test_worst_abscissae_are_those_of_single_gears(main_gear):

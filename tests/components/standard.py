@@ -473,6 +473,6 @@ def with_sizes(expression: Any, sizes: Sequence[Any]) -> float:
     return float(ca.substitute(expression, symbols, starts))
 
 
-def least(cases: Iterator[Any]) -> list[Any]:
+def least(cases: Sequence[Any]) -> list[Any]:
     """One case of each kind, by the first word of its name: the last that is not full."""
     return list({case.id.removeprefix("contact ").split()[0]: case for case in cases if "full" not in case.id}.values())

@@ -37,7 +37,10 @@ def damper_blocks():
             yield pytest.param(home | compliance | block, id=" ".join(filter(None, (tag, chain, "full" * i))))
 
 
-@pytest.fixture(scope="module", params=damper_blocks())
+BLOCKS = list(damper_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(damper=request.param)
 
@@ -134,6 +137,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(damper_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

@@ -19,7 +19,10 @@ def gear_blocks():
             yield pytest.param(block, id=f"{tag}{' full' * i}")
 
 
-@pytest.fixture(scope="module", params=gear_blocks())
+BLOCKS = list(gear_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(gear=request.param)
 
@@ -84,6 +87,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(gear_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

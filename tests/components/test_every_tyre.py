@@ -28,7 +28,10 @@ def tyre_blocks():
             yield pytest.param(keys, id=f"contact {tag}{' full' * i}")
 
 
-@pytest.fixture(scope="module", params=tyre_blocks())
+BLOCKS = list(tyre_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(tyre=request.param)
 
@@ -122,6 +125,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(tyre_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

@@ -52,7 +52,6 @@ def shortest_wavelength(study: Study, tables: Iterable[ModeTable]) -> Wavelength
     Wavelength or None
         None where nothing oscillates.
     """
-    contact = 2 * study.tyre.half_contact_length
     found = []
     for table in tables:
         fastest = np.abs(table.eigenvalues.imag).max(axis=1)
@@ -61,5 +60,7 @@ def shortest_wavelength(study: Study, tables: Iterable[ModeTable]) -> Wavelength
         at = int(lengths.argmin())
         if np.isfinite(lengths[at]):
             length = float(lengths[at])
+            *_, a = study.tyre.linear(table.load, study.tyre.pressure)
+            contact = 2 * float(a)
             found.append(Wavelength(length, length / contact, float(table.speeds[at]), table.load))
     return min(found, key=lambda wave: wave.length, default=None)

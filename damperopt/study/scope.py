@@ -27,6 +27,8 @@ def covers(study: Study) -> list[str]:
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}."
     ]
+    if words := study.tyre.origin():
+        found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
     if names := [name for name, value in left if value is not None]:
         found.append(

@@ -28,6 +28,9 @@ from .variables import Design, Variable
 
 __all__ = ["Study", "unit_of"]
 
+LOADS = 17
+"""Of a range of loads, at which the tyre is asked whether it has data."""
+
 
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
@@ -61,6 +64,10 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        for load in self.envelope.samples(LOADS):
+            if words := self.beyond_tyre(load):
+                allowed = "loads that the tyre has data for"
+                raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
         topology, names = self.damper.topology, self.variable_names
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
@@ -76,6 +83,12 @@ class Study(Record):
                     f"a torque: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def beyond_tyre(self, load: float) -> str:
+        """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
+        at_rest = {state.name: 0.0 for state in self.gear.STATES}
+        on_wheels = {wheel.load for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load)}
+        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in on_wheels)), "")
 
     def _tyre_has_a_peak(self) -> bool:
         peaks = self.tyre.peaks(max(self.envelope.loads), self.tyre.pressure)

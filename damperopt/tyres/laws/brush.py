@@ -1,4 +1,8 @@
-"""The brush law of Fiala: bristles that stick at the front of the footprint and slide at its rear."""
+"""The brush law of Fiala: bristles that stick at the front of the footprint and slide at its rear.
+
+At zero camber and without drive or brake the UA law of Gim and Nikravesh is the same function, C_a S l^2 + mu F_z (1 - 3 l^2 +
+2 l^3) with l = 1 - C_a S/(3 mu F_z) and S = |tan(alpha)|; the Basic and Enhanced models of Adams Aircraft are these two.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ class BrushLaw(SlipLaw):
 
     LOAD_POWERS: ClassVar = (0,)
 
-    law: Literal["brush", "fiala"]
+    law: Literal["brush", "fiala", "ua"]
     cornering_stiffness: Annotated[float, Quantity("N/rad", above=0, example="440 kN/rad")]
     """C_Fa, slope of the side force at zero slip, for any load [N/rad]."""
     friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")]

@@ -84,11 +84,14 @@ class Study(Record):
                 )
         return self
 
+    def wheel_loads(self, load: float) -> tuple[float, ...]:
+        """Loads on the wheels [N] at a load on the gear [N]."""
+        at_rest = {state.name: 0.0 for state in self.gear.STATES}
+        return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
+
     def beyond_tyre(self, load: float) -> str:
         """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
-        at_rest = {state.name: 0.0 for state in self.gear.STATES}
-        on_wheels = {wheel.load for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load)}
-        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in on_wheels)), "")
+        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     def _tyre_has_a_peak(self) -> bool:
         peaks = self.tyre.peaks(max(self.envelope.loads), self.tyre.pressure)

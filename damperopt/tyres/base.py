@@ -117,6 +117,10 @@ class SlipLaw(Record):
         """Why the law has no answer at a load of the wheel [N], in words; empty where it has one."""
         return ""
 
+    def loads(self) -> tuple[float, float] | None:
+        """Loads for which its numbers are made [N], for tables; None where the numbers do not say."""
+        return None
+
     def origin(self) -> str:
         """Where its numbers come from if not from the study, and how far they hold: a sentence, or nothing."""
         return ""
@@ -212,6 +216,13 @@ class AtLoad(Record):
         """As those of the law."""
         law: Any = super(AtLoad, self.at(load))
         return dict(law.others(load, pressure))
+
+    def loads(self) -> tuple[float, float] | None:
+        """As those of the law, within the tables."""
+        law: Any = super()
+        ends = [law.loads(), *((table.load[0], table.load[-1]) for table in self._tables().values())]
+        given = [pair for pair in ends if pair is not None]
+        return (max(low for low, _ in given), min(high for _, high in given)) if given else None
 
     def beyond(self, load: float, pressure: float | None) -> str:
         """As that of the law; a table ends with its last point."""

@@ -100,6 +100,11 @@ class MagicFormulaLaw(SlipLaw):
             most = where(bound > most, bound, most)
         return Peaks(curves.D, most)
 
+    def loads(self) -> tuple[float, float]:
+        """Those of the data, or a fifth to 1.5 of the nominal load."""
+        given, nominal = self.data_loads, self.coefficients.LFZO * self.coefficients.FNOMIN
+        return (0.2 * nominal, 1.5 * nominal) if given is None else (max(given.min, 0.05 * given.max), given.max)
+
     def beyond(self, load: float, pressure: float | None) -> str:
         """A load beyond that of the data, or one at which a fit has lost friction, stiffness, trail or relaxation length."""
         loads = self.data_loads

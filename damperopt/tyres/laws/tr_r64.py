@@ -177,6 +177,14 @@ class TR_R64Law(SlipLaw):
             "friction": self._grip(load, pressure) / load,
         }
 
+    def loads(self) -> tuple[float, float]:
+        """From a twentieth of the load that presses the tyre flat by 0.3 of its width, to that load."""
+        d, w = self._lengths()
+        pressure = self._pressure(self.pressure)  # type: ignore[attr-defined]  # of the tyre it belongs to
+        C_z = {"VII": 0.02, "III": 0.03}[self.type]
+        most = float(2.4 * (DEEPEST - C_z) * (pressure + 0.08 * self.rated_pressure) * w * sqrt(w * d))
+        return 0.05 * most, 0.999999 * most
+
     def beyond(self, load: float, pressure: float | None) -> str:
         """A deflection of more than 0.3 of the width, or none."""
         _, x = self._deflections(load, pressure)

@@ -21,7 +21,7 @@ from .components import gears
 from .document import dotted, few, read
 from .study import Study
 
-__all__ = ["is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
+__all__ = ["files_of", "is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
 
 logger = logging.getLogger("damperopt")
 
@@ -68,6 +68,13 @@ def loads(text: str, name: str = "<text>") -> Study:
         As `load`.
     """
     return parsed(text, name, Study)[0]
+
+
+def files_of(path: str | Path) -> list[str]:
+    """Files that a study names and that are read with it, as it names them."""
+    tyre = read(text_of(path), str(path), "the keys of a study").data.get("tyre")
+    named = tyre.get("file") if isinstance(tyre, dict) else None
+    return [named] if isinstance(named, str) else []
 
 
 def is_sweep(text: str, name: str) -> bool:

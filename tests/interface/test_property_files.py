@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 import damperopt
+from damperopt.cli import app
 from damperopt.tyres.property_file import property_file
 
 WHOLE = """$ a tyre of nobody
@@ -114,6 +115,20 @@ def test_a_study_reads_the_file_beside_it(folder, monkeypatch):
     )
     again = damperopt.loads(yaml.safe_dump(study.model_dump(mode="json", exclude_none=True)))
     assert again == study
+
+
+def test_run_folder_holds_the_file_that_its_study_names(folder, configs, monkeypatch):
+    text = (configs / "minimal.yaml").read_text()
+    start, end = text.index("tyre:"), text.index("damper:")
+    block = "tyre: {file: tyres/main.tir, half_contact_length: 0.1 m}\n"
+    (folder / "own.yaml").write_text(text[:start] + block + text[end:] + "solver: {starts: 1}\n")
+    monkeypatch.chdir(folder)
+    with pytest.raises(SystemExit) as end_of_command:
+        app(["optimise", "own.yaml", "--no-figures", "-o", "out"])
+    assert not end_of_command.value.code
+    assert (folder / "out" / "tyres" / "main.tir").read_text() == WHOLE
+    assert damperopt.load(folder / "out" / "config.yaml") == damperopt.load(folder / "own.yaml")
+    assert damperopt.load_result(folder / "out").config["tyre"]["source"] == "main.tir"
 
 
 def test_keys_of_the_study_come_first(folder):

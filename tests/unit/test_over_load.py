@@ -8,14 +8,14 @@ from components_of import tyre_of
 
 import damperopt
 from damperopt.expressions.calculus import piecewise
-from damperopt.tyres.over_load import OverLoad
+from damperopt.tyres.over_load import LengthTable
 
 TABLE = {"load": [50e3, 100e3, 200e3], "value": [0.10, 0.14, 0.18]}
 LAW = {"law": "brush", "cornering_stiffness": 440e3, "friction": 0.8, "relaxation_length": 0.3}
 
 
 def test_values_are_those_of_straight_lines():
-    table = OverLoad.model_validate(TABLE)
+    table = LengthTable.model_validate(TABLE)
     loads = np.array([50e3, 60e3, 100e3, 150e3, 200e3])
     expected = np.interp(loads, TABLE["load"], TABLE["value"])
     np.testing.assert_allclose([table.at(load) for load in loads], expected, rtol=1e-14)
@@ -25,7 +25,7 @@ def test_values_are_those_of_straight_lines():
 
 
 def test_a_ball_over_a_corner_holds_both_lines():
-    table = OverLoad.model_validate(TABLE)
+    table = LengthTable.model_validate(TABLE)
     found = table.at(flint.arb(100e3, 20e3))
     for load in (80e3, 90e3, 100e3, 110e3, 120e3):
         assert found.contains(flint.arb(table.at(load)))
@@ -83,3 +83,46 @@ def test_what_is_no_table_is_refused(block, says, configs):
         damperopt.loads(text)
     assert len(error.value.problems) == 1
     assert says in str(error.value)
+
+
+def test_a_slope_may_be_a_table_as_well():
+    """The brush law at a load is that of the slope there, sliding included."""
+    slopes = {"load": ["50 kN", "150 kN"], "value": ["300 kN/rad", "500 kN/rad"]}
+    tyre = tyre_of(**LAW | {"cornering_stiffness": slopes}, half_contact_length=TABLE)
+    plain = tyre_of(**LAW | {"cornering_stiffness": 400e3}, half_contact_length=0.14)
+    assert tyre.LOAD_POWERS is None
+    assert tyre.linear(100e3, None) == plain.linear(100e3, None)
+    for alpha in (-0.6, 0.05, 0.3):
+        assert tyre.force(alpha, 100e3, None) == pytest.approx(plain.force(alpha, 100e3, None), rel=1e-14)
+    assert "table of tyre.cornering_stiffness, 50 to 150 kN" in tyre.beyond(160e3, None)
+    assert tyre.loads() == (50e3, 150e3)
+
+
+WIDER = [
+    {"law": "tr_r64", "size": "49x17", "type": "VII", "rated_pressure": "170 psi"},
+    {"law": "tr_r64", "size": "49x17", "type": "VII", "rated_pressure": "170 psi", "relaxation": "stiffness_ratio"},
+    {**LAW, "half_contact_length": TABLE},
+    {
+        "law": "magic_formula",
+        "half_contact_length": TABLE,
+        "coefficients": {
+            **{"FNOMIN": 1e5, "UNLOADED_RADIUS": 0.6, "PCY1": 1.4, "PDY1": 0.8, "PDY2": -0.1, "PKY1": -12.0, "PKY2": 1.2},
+            **{"PTY1": 1.3, "PTY2": 1.1, "QDZ1": 0.1, "QDZ2": -0.02},
+        },
+    },
+]
+
+
+@pytest.mark.parametrize("block", WIDER)
+def test_small_slip_data_of_a_ball_of_loads_hold_those_of_every_load(block):
+    """For proofs over slices of the load: enclosures, and not much wider than what they enclose."""
+    tyre = tyre_of(**block)
+    for low, high in ((60e3, 66e3), (95e3, 105e3), (120e3, 130e3), (180e3, 190e3)):
+        ball = flint.arb((low + high) / 2, (high - low) / 2)
+        found = tuple(tyre.linear(ball, None))
+        samples = np.array([tuple(tyre.linear(float(load), None)) for load in np.linspace(low, high, 41)])
+        for value, column in zip(found, samples.T, strict=True):
+            held = value if isinstance(value, flint.arb) else flint.arb(value)
+            assert all(held.contains(flint.arb(float(number))) or held == float(number) for number in column)
+            # a product of two data of which one falls while the other grows is as wide as both: 12 % at most
+            assert 2 * float(held.rad()) <= 4 * np.ptp(column) + 0.12 * column.mean()

@@ -16,6 +16,7 @@ from ...ports.sizing import Peaks
 from ...quantities.record import refuse
 from ...quantities.units import Quantity
 from ..base import Linear, SlipLaw
+from ..over_load import SlopeOverLoad
 
 __all__ = ["BrushLaw"]
 
@@ -26,8 +27,8 @@ class BrushLaw(SlipLaw):
     LOAD_POWERS: ClassVar = (0,)
 
     law: Literal["brush", "fiala", "ua"]
-    cornering_stiffness: Annotated[float, Quantity("N/rad", above=0, example="440 kN/rad")]
-    """C_Fa, slope of the side force at zero slip, for any load [N/rad]."""
+    cornering_stiffness: SlopeOverLoad
+    """C_Fa, slope of the side force at zero slip [N/rad]; a number for any load, or a table over load."""
     friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")]
     """mu of the footprint at zero slip [1]."""
     sliding_friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")] | None = None

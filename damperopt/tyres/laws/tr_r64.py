@@ -29,6 +29,12 @@ DEEPEST = 0.3
 """Deflection over width up to which the formulas are used."""
 
 
+def _parabola(r: Expr, c: float, b: float, a: float) -> Expr:
+    """c + b r - a r^2 with the square completed: of a ball it holds no more than it must."""
+    beside = r - b / (2 * a)
+    return c + b * b / (4 * a) - a * beside**2
+
+
 class TR_R64Law(SlipLaw):
     """NASA TR R-64: an estimate, +-20 %, of a bias-ply tyre of type III or VII from size, load and pressure."""
 
@@ -102,14 +108,14 @@ class TR_R64Law(SlipLaw):
         """h = 0.85 d sqrt(r - r^2), r = d0/d; or that of the study."""
         r, _ = self._deflections(load, pressure)
         given = self.half_contact_length  # type: ignore[attr-defined]  # of the tyre it belongs to
-        return 0.85 * self._lengths()[0] * sqrt(r - r * r) if given is None else given
+        return 0.85 * self._lengths()[0] * sqrt(_parabola(r, 0.0, 1.0, 1.0)) if given is None else given
 
     def _cornering(self, load: Expr, pressure: Expr) -> Expr:
         """N = C_c w^2 (p + 0.44 p_r) (1.2 r - 8.8 r^2 up to r = 0.0875, then 0.0674 - 0.34 r) [N/rad]."""
         r, _ = self._deflections(load, pressure)
         _, w = self._lengths()
         C_c = {"VII": 57.0, "III": 63.0}[self.type]
-        shape = piecewise(r, [0.0875], [lambda r: 1.2 * r - 8.8 * r * r, lambda r: 0.0674 - 0.34 * r])
+        shape = piecewise(r, [0.0875], [lambda r: _parabola(r, 0.0, 1.2, 8.8), lambda r: 0.0674 - 0.34 * r])
         return C_c * w * w * (self._pressure(pressure) + 0.44 * self.rated_pressure) * shape
 
     def _lateral(self, load: Expr, pressure: Expr) -> Expr:
@@ -122,7 +128,7 @@ class TR_R64Law(SlipLaw):
         """L_y = (2.8 - 0.8 p/p_r) w times a function of r in three pieces [m]."""
         r, _ = self._deflections(load, pressure)
         shape = piecewise(
-            r, [0.053, 0.068], [lambda r: 11 * r, lambda r: 64 * r - 500 * r * r - 1.4045, lambda r: 0.9075 - 4 * r]
+            r, [0.053, 0.068], [lambda r: 11 * r, lambda r: _parabola(r, -1.4045, 64, 500), lambda r: 0.9075 - 4 * r]
         )
         return (2.8 - 0.8 * self._pressure(pressure) / self.rated_pressure) * self._lengths()[1] * shape
 

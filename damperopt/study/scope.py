@@ -54,4 +54,5 @@ def leaves_out(study: Study) -> tuple[str, ...]:
     tuple of str
         A phrase for each; it says where the study has a number for it that only `simulate` uses.
     """
-    return (*study.damper.leaves_out(), *study.tyre.contact.leaves_out(), *study.gear.leaves_out())
+    parts = (study.damper, study.tyre, study.tyre.contact, study.gear)
+    return tuple(words for part in parts for words in part.leaves_out())

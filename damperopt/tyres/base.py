@@ -121,6 +121,14 @@ class SlipLaw(Record):
         """Loads for which its numbers are made [N], for tables; None where the numbers do not say."""
         return None
 
+    def radius(self) -> float | None:
+        """Radius of the tyre without load [m], where its numbers hold it."""
+        return None
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this law does not hold, in words."""
+        return ()
+
     def origin(self) -> str:
         """Where its numbers come from if not from the study, and how far they hold: a sentence, or nothing."""
         return ""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
 from ..expressions.calculus import Expr, absolute, atan, cos, sin, where
-from ..quantities.record import Force, Length, Pressure, Record, Stiffness
+from ..quantities.record import Pressure, Record, Stiffness
 from ..quantities.units import Quantity
 
 __all__ = ["OFFSETS", "Coefficients", "Curves"]
@@ -28,13 +28,13 @@ OFFSETS = (
 class Coefficients(Record):
     """Coefficients of the Magic Formula; those that are left out are 0, factors 1."""
 
-    FNOMIN: Force
+    FNOMIN: Annotated[float, Quantity("N", at_least=100, at_most=5e6, example="150 kN")]
     """F_z0, nominal load [N]."""
-    UNLOADED_RADIUS: Length
+    UNLOADED_RADIUS: Annotated[float, Quantity("m", at_least=0.03, at_most=3, example="0.6 m")]
     """R_0 [m]."""
     PCY1: Annotated[float, Quantity("1", above=0, at_most=2, example="1.3")]
     """C, shape of the side force; at most 2, or it would change its sign."""
-    PDY1: Annotated[float, Quantity("1", example="0.8")]
+    PDY1: Annotated[float, Quantity("1", at_least=-3, at_most=3, example="0.8")]
     """Friction at the nominal load."""
     PDY2: Shape = 0.0
     """Friction, its change with load."""
@@ -44,7 +44,7 @@ class Coefficients(Record):
     """Curvature, its change with load."""
     PEY3: Shape = 0.0
     """Curvature, its difference between left and right slip; an offset."""
-    PKY1: Annotated[float, Quantity("1", example="-15")]
+    PKY1: Annotated[float, Quantity("1", at_least=-200, at_most=200, example="-15")]
     """Largest cornering stiffness over nominal load [1/rad]; negative in files of ISO axes."""
     PKY2: Annotated[float, Quantity("1", above=0, example="2")]
     """Load over nominal load at which it is largest."""
@@ -58,7 +58,7 @@ class Coefficients(Record):
     """Side force over load at zero slip; an offset."""
     PVY2: Shape = 0.0
     """Its change with load; an offset."""
-    PTY1: Annotated[float, Quantity("1", above=0, example="1.5")] | None = None
+    PTY1: Annotated[float, Quantity("1", above=0, at_most=20, example="1.5")] | None = None
     """Largest relaxation length over R_0."""
     PTY2: Annotated[float, Quantity("1", above=0, example="2")] | None = None
     """Load over nominal load at which it is largest."""
@@ -82,7 +82,7 @@ class Coefficients(Record):
     """Slope factor of the residual moment, share of B C."""
     QCZ1: Annotated[float, Quantity("1", at_least=0, at_most=2, example="1.1")] = 0.0
     """Shape of the trail."""
-    QDZ1: Annotated[float, Quantity("1", example="0.1")] = 0.0
+    QDZ1: Annotated[float, Quantity("1", at_most=1, example="0.1")] = 0.0
     """Trail over R_0 at the nominal load."""
     QDZ2: Shape = 0.0
     """Its change with load."""

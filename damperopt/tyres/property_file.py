@@ -6,6 +6,7 @@ which Adams Aircraft calls Basic and Enhanced.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -262,8 +263,10 @@ def _brush(text: PropertyText, kind: str, factors: Mapping[str, float], given: s
         if entry is None and name not in optional:
             _missing(text, name, "a number" + (", or tyre.relaxation_length in the study" if name == "REL_LEN_LAT" else ""))
         if entry is not None and value is not None:
-            if not value > 0:
-                text.say(entry.line, entry.section, name, f"found {value:g}; allowed: a number > 0")
+            most = 2.0 if name in ("UMIN", "UMAX") else math.inf
+            if not 0 < value <= most:
+                words = f"a number > 0{' and <= 2' if most == 2 else ''}"
+                text.say(entry.line, entry.section, name, f"found {value:g}; allowed: {words}")
             block[key] = value
     if block.get("sliding_friction", 0) > block.get("friction", 2):
         del block["sliding_friction"]

@@ -239,6 +239,9 @@ ZOO = [
     ("QDZ1 = 0.09", "QDZ1 = -0.09", "QDZ1: found -0.09; allowed: a number, > 0"),
     ("LMUY = 0.9", "LMUY = 0", "[SCALING_COEFFICIENTS] LMUY: found 0.0 is out of range"),
     ("FNOMIN = 100000", "FNOMIN = -100000", "main.tir:25: [VERTICAL] FNOMIN: found -100000.0 is out of range"),
+    ("LENGTH = 'meter'", "LENGTH = 'mm'", "main.tir:18: [DIMENSION] UNLOADED_RADIUS: found 0.00062 is out of range"),
+    ("FORCE = 'newton'", "FORCE = 'kN'", "main.tir:25: [VERTICAL] FNOMIN: found 100000000.0 is out of range"),
+    ("PDY1 = 0.8", "PDY1 = 80", "main.tir:39: [LATERAL_COEFFICIENTS] PDY1: found 80.0 is out of range"),
     ("LENGTH = 'meter'", "LENGTH = 'parsec'", "main.tir:8: [UNITS] LENGTH: found 'parsec'; allowed: meter"),
     ("FORCE = 'newton'", "FORCE = 'newton'\nFORCE = 'kN'", "main.tir:10: [UNITS] FORCE: found a second time, first on line 9"),
     ("'PAC2002'", "'FTIRE'", "main.tir:14: [MODEL] PROPERTY_FILE_FORMAT: found 'FTIRE'; allowed: PAC2002"),
@@ -372,6 +375,7 @@ def test_brush_files(folder, kind):
     [
         ("CALPHA = 8000\n", "", "main.tir:10: [PARAMETER] CALPHA: missing key; allowed: a number"),
         ("UMIN = 0.5", "UMIN = 0.9", "main.tir:13: [PARAMETER] UMIN: found 0.9; allowed: at most UMAX"),
+        ("UMAX = 0.8", "UMAX = 8", "main.tir:14: [PARAMETER] UMAX: found 8; allowed: a number > 0 and <= 2"),
         ("CALPHA = 8000", "CALPHA = -8000", "CALPHA: found -458366; allowed: a number > 0"),
         ("REL_LEN_LAT = 400\n", "", "REL_LEN_LAT: missing key; allowed: a number, or tyre.relaxation_length in the study"),
     ],

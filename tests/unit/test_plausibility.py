@@ -53,3 +53,11 @@ def test_a_part_that_outweighs_all_others():
     (found,) = implausible_masses({"links": 2.0, "damper": 300.0})
     assert "'damper'" in found.what
     assert found.usual[1] == pytest.approx(200.0)
+
+
+def test_a_tyre_of_another_size_than_the_wheel_is_named(configs):
+    study = damperopt.load(configs / "nose_gear_tr_r64.yaml")
+    assert not implausible(study)
+    (found,) = implausible(study.replace(gear__wheel_radius=0.4, gear__yaw_inertia=4.0))
+    assert (found.key, found.value) == ("gear.wheel_radius", 0.4)
+    assert found.usual == pytest.approx((0.8 * 0.2286, 1.02 * 0.2286))  # 18 in across

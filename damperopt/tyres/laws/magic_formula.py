@@ -118,6 +118,14 @@ class MagicFormulaLaw(SlipLaw):
         lost = next((name for name, value in found.items() if not value > 0), None)
         return "" if lost is None else f"is beyond the tyre's coefficients: they give no positive {lost} there"
 
+    def radius(self) -> float:
+        """R_0 [m]."""
+        return self.coefficients.UNLOADED_RADIUS
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """Camber and offsets."""
+        return ("camber of the wheel, and offsets of the tyre (tyre.coefficients)",)
+
     def origin(self) -> str:
         """What is left of the file."""
         named = f" of {self.source}" if self.source else ""

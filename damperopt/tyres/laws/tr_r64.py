@@ -198,6 +198,14 @@ class TR_R64Law(SlipLaw):
             return ""
         return f"presses a {self.size} tyre flat by {x:.3g} of its width, where its formulas end at {DEEPEST:g}"
 
+    def radius(self) -> float:
+        """d/2 [m]."""
+        return float(self._lengths()[0]) / 2
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """The spread."""
+        return ("spread of the estimated tyre, about 20 % to either side (tyre.size)",)
+
     def origin(self) -> str:
         """What the numbers are."""
         return (

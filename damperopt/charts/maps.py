@@ -33,10 +33,15 @@ _BINARY |= {
     ca.OP_ATAN2: "math.atan2({}, {})",
     ca.OP_HYPOT: "math.hypot({}, {})",
 }
-_BINARY |= {ca.OP_FMAX: "max({}, {})", ca.OP_FMIN: "min({}, {})", ca.OP_LT: "float({} < {})", ca.OP_LE: "float({} <= {})"}
 _BINARY |= {
-    ca.OP_EQ: "float({} == {})",
-    ca.OP_NE: "float({} != {})",
+    ca.OP_FMAX: "max({}, {})",
+    ca.OP_FMIN: "min({}, {})",
+    ca.OP_LT: "(1.0 if {} < {} else 0.0)",
+    ca.OP_LE: "(1.0 if {} <= {} else 0.0)",
+}
+_BINARY |= {
+    ca.OP_EQ: "(1.0 if {} == {} else 0.0)",
+    ca.OP_NE: "(1.0 if {} != {} else 0.0)",
     ca.OP_AND: "{} * {}",
     ca.OP_IF_ELSE_ZERO: "({1} if {0} != 0 else 0.0)",
 }

@@ -24,6 +24,7 @@ __all__ = [
     "is_symbol",
     "log",
     "partial",
+    "piecewise",
     "sin",
     "slope",
     "sqrt",
@@ -93,6 +94,39 @@ def where(condition: Expr, yes: Expr, no: Expr) -> Expr:
     if isinstance(condition, np.ndarray):
         return np.where(condition, yes, no)
     return yes if condition else no
+
+
+def piecewise(x: Expr, limits: Sequence[float], pieces: Sequence[Callable[[Expr], Expr]]) -> Expr:
+    """A function that is written piece by piece; of a ball that touches several pieces the union of their values.
+
+    Parameters
+    ----------
+    x : Expr
+    limits : sequence of float
+        (n,) ascending; from each on the next piece holds.
+    pieces : sequence of callable
+        (n + 1,) of x.
+
+    Examples
+    --------
+    >>> [piecewise(x, [1.0, 2.0], [lambda x: 0.0, lambda x: x - 1, lambda x: 1.0]) for x in (0.5, 1.25, 3.0)]
+    [0.0, 0.25, 1.0]
+    """
+    if is_symbol(x) or isinstance(x, np.ndarray):
+        value = pieces[-1](x)
+        for limit, piece in zip(limits[::-1], pieces[-2::-1], strict=True):
+            value = where(x < limit, piece(x), value)
+        return value
+    # of numbers one piece is left; of a ball, which is neither below nor above a limit that it holds, those on both sides
+    inside = [
+        piece
+        for low, high, piece in zip([None, *limits], [*limits, None], pieces, strict=True)
+        if not (low is not None and x < low) and not (high is not None and x >= high)
+    ]
+    first, *others = (piece(x) for piece in inside)
+    for other in others:
+        first = first.union(other)
+    return first
 
 
 def is_symbol(x: Expr) -> bool:

@@ -122,11 +122,13 @@ def posed(
     Raises
     ------
     ConfigError
-        If a number is not positive and finite, or the gear lacks what is disturbed.
+        If a number is not positive and finite, the tyre has no data for the load, or the gear lacks what is disturbed.
     """
     for name, value, unit in (("speed", speed, "m/s"), ("load", load, "N"), ("duration", duration, "s")):
         if not 0 < value < np.inf:
             raise ConfigError(f"{name}: found {value}; allowed: a positive number in {unit}")
+    if words := study.beyond_tyre(load):
+        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that the tyre has data for")
     try:
         disturbance = Disturbance.model_validate(disturbance)
     except ValidationError as error:

@@ -21,9 +21,19 @@ from ..results import DesignResult
 from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
-from .tables import write_chart, write_chart_json, write_modes
+from ..tyres.curves import TyreCurves
+from .tables import write_chart, write_chart_json, write_modes, write_tyre
 
-__all__ = ["Answer", "DesignFigure", "design_chart", "draw_modes", "figures_of", "write_chart_files", "write_design"]
+__all__ = [
+    "Answer",
+    "DesignFigure",
+    "design_chart",
+    "draw_modes",
+    "figures_of",
+    "write_chart_files",
+    "write_design",
+    "write_tyre_files",
+]
 
 SPEEDS = 400
 """Speeds of a table and a figure of modes."""
@@ -312,6 +322,28 @@ def write_chart_files(
     if filled is not None:
         np.savez_compressed(place / "map.npz", x=filled.x, y=filled.y, values=filled.values, quantity=np.array(filled.quantity))
     _save({"chart": drawn}, place)
+
+
+def write_tyre_files(place: Path, record: TyreCurves) -> None:
+    """Tables of a tyre as CSV, and its figures.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    record : TyreCurves
+    """
+
+    def drawing(name: str) -> Callable[[], Any]:
+        def drawn() -> Any:
+            from .. import figures
+
+            return getattr(figures, name)(record)
+
+        return drawn
+
+    write_tyre(place, record)
+    _save({"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}, place)
 
 
 def _drawing(figure: DesignFigure, answer: Answer) -> Callable[[], Any]:

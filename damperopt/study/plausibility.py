@@ -201,8 +201,11 @@ def implausible_masses(parts: Mapping[str, float]) -> list[Implausible]:
 
 def _of_tyre(study: Study) -> Iterator[Implausible]:
     tyre, radius = study.tyre, study.gear.wheel_radius
-    at_loads = [(load, *map(float, tyre.linear(load, tyre.pressure))) for load in study.envelope.loads]
+    on_wheels = sorted({own for load in study.envelope.loads for own in study.wheel_loads(load)})
+    at_loads = [(load, *map(float, tyre.linear(load, tyre.pressure))) for load in on_wheels]
     seen: set[tuple[float, ...]] = set()
+    if own := tyre.radius():
+        yield Implausible("gear.wheel_radius", "the radius of the wheel", radius, "m", (0.8 * own, 1.02 * own))
     for load, side, moment, sigma, a in at_loads:
         data = tuple(round(value, 9) for value in (side / load, moment / load, sigma, a))
         if data in seen:  # the same at every load

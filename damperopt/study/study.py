@@ -32,6 +32,9 @@ from .variables import Design, Variable
 
 __all__ = ["Study", "unit_of"]
 
+LOADS = 17
+"""Of a range of loads, at which the tyre is asked whether it has data."""
+
 
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
@@ -71,6 +74,10 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        for load in self.envelope.samples(LOADS):
+            if words := self.beyond_tyre(load):
+                allowed = "loads that the tyre has data for"
+                raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
@@ -86,6 +93,15 @@ class Study(Record):
                     f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def wheel_loads(self, load: float) -> tuple[float, ...]:
+        """Loads on the wheels [N] at a load on the gear [N]."""
+        at_rest = {state.name: 0.0 for state in self.gear.STATES}
+        return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
+
+    def beyond_tyre(self, load: float) -> str:
+        """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
+        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:

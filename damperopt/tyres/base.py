@@ -9,17 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.sizing import Peaks
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Length, Pressure, Record
+from ..quantities.record import Pressure, Record
 from ..quantities.units import Quantity
+from .over_load import LengthOverLoad, OverLoad
 
-__all__ = ["ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
+__all__ = ["AtLoad", "ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,10 @@ class SlipLaw(Record):
     """Powers of F_z in the linear model; None: no polynomial in F_z, so that proofs go load by load."""
     ODD: ClassVar[bool] = True
     """Whether force and moment change sign with the slip."""
+    GIVES: ClassVar[tuple[str, ...]] = ()
+    """Keys of `Tyre` that the law knows by itself, as functions of load and pressure: a study may leave them out (None)."""
+    TABLE: ClassVar[tuple[Output, ...]] = ()
+    """What else the law knows of the tyre at a load, for a table: names, units, meanings of `others`."""
 
     law: str
 
@@ -103,6 +108,30 @@ class SlipLaw(Record):
     def peaks(self, load: Expr, pressure: Expr) -> Peaks | None:
         """Largest force and moment at a load; None where the law has no peak, and a limit torque must be given."""
         return None
+
+    def others(self, load: float, pressure: float | None) -> dict[str, float]:
+        """Values of `TABLE` at a load [N] and a pressure [Pa], by name [SI]."""
+        return {}
+
+    def beyond(self, load: float, pressure: float | None) -> str:
+        """Why the law has no answer at a load of the wheel [N], in words; empty where it has one."""
+        return ""
+
+    def loads(self) -> tuple[float, float] | None:
+        """Loads for which its numbers are made [N], for tables; None where the numbers do not say."""
+        return None
+
+    def radius(self) -> float | None:
+        """Radius of the tyre without load [m], where its numbers hold it."""
+        return None
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this law does not hold, in words."""
+        return ()
+
+    def origin(self) -> str:
+        """Where its numbers come from if not from the study, and how far they hold: a sentence, or nothing."""
+        return ""
 
 
 class ContactLine(Record):
@@ -152,6 +181,67 @@ class ContactLine(Record):
         return ()
 
 
+class AtLoad(Record):
+    """Stands before a slip law, whose equations then see a key that is a table over load as its value at that load."""
+
+    def at(self, load: Expr) -> Self:
+        """The tyre with every table at a load [N]; itself where it has none."""
+        found = {key: table.at(load) for key, table in self._tables().items()}
+        return self.model_copy(update=found) if found else self
+
+    def _tables(self) -> dict[str, OverLoad]:
+        values = ((key, getattr(self, key)) for key in type(self).model_fields)
+        return {key: value for key, value in values if isinstance(value, OverLoad)}
+
+    @property
+    def LOAD_POWERS(self) -> tuple[int, ...] | None:
+        """Powers of F_z in the linear model: those of the law; a table is no polynomial."""
+        law: Any = super()
+        return None if self._tables() else law.LOAD_POWERS
+
+    def linear(self, load: Expr, pressure: Expr) -> Any:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.linear(load, pressure)
+
+    def force(self, alpha_F: Expr, load: Expr, pressure: Expr) -> Expr:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.force(alpha_F, load, pressure)
+
+    def moment(self, alpha_M: Expr, load: Expr, pressure: Expr, corners: Corners) -> Expr:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.moment(alpha_M, load, pressure, corners)
+
+    def peaks(self, load: Expr, pressure: Expr) -> Peaks | None:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        found: Peaks | None = law.peaks(load, pressure)
+        return found
+
+    def others(self, load: float, pressure: float | None) -> dict[str, float]:
+        """As those of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return dict(law.others(load, pressure))
+
+    def loads(self) -> tuple[float, float] | None:
+        """As those of the law, within the tables."""
+        law: Any = super()
+        ends = [law.loads(), *((table.load[0], table.load[-1]) for table in self._tables().values())]
+        given = [pair for pair in ends if pair is not None]
+        return (max(low for low, _ in given), min(high for _, high in given)) if given else None
+
+    def beyond(self, load: float, pressure: float | None) -> str:
+        """As that of the law; a table ends with its last point."""
+        for key, table in self._tables().items():
+            if not table.load[0] <= load <= table.load[-1]:
+                ends = f"{table.load[0] / 1e3:g} to {table.load[-1] / 1e3:g} kN"
+                return f"is beyond the table of tyre.{key}, {ends}"
+        law: Any = super(AtLoad, self.at(load))
+        return str(law.beyond(load, pressure))
+
+
 class Tyre(Record):
     """What contact line and slip law share; `study.tyre` is one with a slip law's keys and methods beside it."""
 
@@ -161,10 +251,10 @@ class Tyre(Record):
         Output("aligning_moment", "N m", "that of the tread width left out"),
     )
 
-    half_contact_length: Length
-    """a, half the length of the footprint [m]."""
-    relaxation_length: Length
-    """sigma, decay length of the string's deflection before the footprint [m]."""
+    half_contact_length: LengthOverLoad
+    """a, half the length of the footprint [m]; a number, or a table over load."""
+    relaxation_length: LengthOverLoad
+    """sigma, decay length of the string's deflection before the footprint [m]; a number, or a table over load."""
     tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
     """kappa, moment against the swivel rate of a footprint with a width, kappa theta'/V [N m^2/rad]."""
     slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483

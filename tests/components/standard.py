@@ -106,6 +106,8 @@ def _example_of(kind: type[BaseModel], name: str) -> Any:
     field = kind.model_fields[name]
     if _is_choice(field):
         return get_args(field.annotation)[0]
+    if field.examples:
+        return field.examples[0]
     quantity = quantity_of(field.annotation, field.metadata)
     if quantity is not None and quantity.example:
         return float(quantity.example) if quantity.unit == "1" else quantity.example

@@ -18,9 +18,10 @@ LAWS, LINES = rooms()["slip laws"], rooms()["contact lines"]
 
 def tyre_blocks():
     for tag, law in LAWS.items():
-        taken = standard.blocks(law, lambda block: standard.takes(tyre=standard.TYRE | block))
+        shared = {key: value for key, value in standard.TYRE.items() if key not in law.GIVES}
+        taken = standard.blocks(law, lambda block, shared=shared: standard.takes(tyre=shared | block))
         for i, block in enumerate(taken):
-            yield pytest.param(standard.TYRE | block, id=f"{tag}{' full' * i}")
+            yield pytest.param(shared | block, id=f"{tag}{' full' * i}")
     for tag, line in LINES.items():
         for i, block in enumerate(standard.blocks(line, lambda block: True)):
             law = next(iter(LAWS.values()))

@@ -62,7 +62,7 @@ def test_wheels_move_as_their_rates_say(study):
     """swivel_rate and lateral_rate are the derivatives of swivel and lateral along a motion, and the load is all carried."""
     gear, names, h = study.gear, [state.name for state in study.gear.STATES], 1e-6
     x = dict(zip(names, np.random.default_rng(2).uniform(-0.05, 0.05, len(names)), strict=True))
-    rates = {s.name: x[s.twin] if s.twin and s.name.endswith("_angle") else 0.0 for s in gear.STATES}
+    rates = {s.name: x[s.twin] if s.twin and not s.name.endswith("_rate") else 0.0 for s in gear.STATES}
     before, now, after = (gear.wheels({n: x[n] + k * h * rates[n] for n in names}, 30.0, 4e4) for k in (-1, 0, 1))
     for early, wheel, late in zip(before, now, after, strict=True):
         # central differences at 1e-6 s of angles of a twentieth of a radian: rounding 1e-11

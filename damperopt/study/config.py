@@ -108,7 +108,7 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
             for path in document.empty
         ])  # fmt: skip
     try:
-        return model.model_validate(data), lines
+        return model.model_validate(data, context={"folder": Path(name).parent}), lines
     except ValidationError as error:
         found = _without_other_branches(error.errors(include_url=False))
         problems = [_message(problem, data, lines, name, model) for problem in found]

@@ -92,6 +92,8 @@ def _example_of(kind: type[BaseModel], name: str) -> Any:
     quantity = quantity_of(field.annotation, field.metadata)
     if quantity is not None and quantity.example:
         return float(quantity.example) if quantity.unit == "1" else quantity.example
+    if field.examples:
+        return field.examples[0]
     for part in (field.annotation, *get_args(field.annotation)):
         if isinstance(part, type) and issubclass(part, BaseModel):
             return example(part)

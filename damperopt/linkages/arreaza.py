@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from ..expressions.calculus import Expr, sin
 from ..ports.linkage import Linkage, Member
-from .base import TorqueLinks, from_lengths, reach_and_height
+from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
 __all__ = ["Arreaza"]
@@ -29,7 +29,7 @@ class Arreaza(TorqueLinks):
         def apex(psi: Expr) -> Expr:
             return ell * sin(psi)
 
-        printed = 2 * E * I_arm / ell, design["c_lambda"] * ell**2
+        printed = 2 * E * I_arm / ell, viscous(design) * ell**2
         return from_lengths(3 * E * I_arm / ell**3, apex, apex, ell, ell, b), printed
 
     def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:

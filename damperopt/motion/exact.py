@@ -190,6 +190,7 @@ FRICTIONS = ("friction", "damper friction")
 def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
     """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
     found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
+    found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
     if len(found) == 2:
         if not ca.is_equal(ca.SX(found[0].argument), ca.SX(found[1].argument), 10):
             raise ConfigError("friction of strut and damper at two places cannot be simulated exactly; allowed: one of the two")
@@ -362,7 +363,7 @@ class _Run:
             return
         rate, drive, most = self._evaluated(t, x)[3][:3]
         if abs(rate) <= STILL:
-            self._sticks = abs(drive) <= most
+            self._sticks = abs(drive) <= most > 0  # in a gap nothing rubs
             self._modes[-1] = 0.0 if self._sticks else np.sign(drive)
         else:
             self._sticks, self._modes[-1] = False, np.sign(rate)

@@ -27,8 +27,12 @@ RATE_STEPS = 24
 """Of Newton's method for the rate of a damper without an inverse: the first-order guess lies far outside where the force grows
 with a high power p of the rate, and each step then takes 1/p off."""
 
-CHAIN_STATES = (State("dashpot_stroke", "m", "damper"), State("link_angle", "rad", "damper"))
-"""States that compliances add."""
+CHAIN_STATES = (
+    State("dashpot_stroke", "m", "damper"),
+    State("link_angle", "rad", "damper"),
+    State("dashpot_angle", "rad", "damper"),
+)
+"""States that compliances add; the last is that of a rotary damper."""
 
 OUTPUTS = (
     Output("damper_stroke", "m", "from rest"),
@@ -107,10 +111,11 @@ class _Chain:
         through = None if k_t is None else self._through_links(k_t, psi - driving)
 
         if k_s is not None:
-            dashpot = symbol("dashpot_stroke")
+            name = "dashpot_angle" if damper.ROTARY else "dashpot_stroke"
+            dashpot = symbol(name)
             F_d = k_s * (s - dashpot)
             v = self._speed(dashpot, F_d)
-            chain["dashpot_stroke"] = dashpot, v
+            chain[name] = dashpot, v
             if k_t is not None:  # in units of an angle, as the unknown is
                 self._unknowns.append((driving, 0, (through - elastic - F_d * lever) / (k_t * link.reach**2)))
         elif k_t is not None:
@@ -122,7 +127,7 @@ class _Chain:
             F_d = self._force(s, v).force
         torque = -engaged * (elastic + F_d * lever) if through is None else -through
 
-        own = self._force(s if k_s is None else chain["dashpot_stroke"][0], v)
+        own = self._force(s if k_s is None else dashpot, v)
         rates = {name: rate for name, (_, rate) in chain.items()} | dict(own.rates)
         closure, unknowns = link.closure(driving), self._unknowns
         shown = (s, v, F_d, position.deflection, F_spring, F_stop)

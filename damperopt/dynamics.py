@@ -106,7 +106,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
 def _of_wheel(states: Sequence[State], wheel: int, wheels: int) -> list[State]:
     """States of one wheel's tyre, by names of their own where there are several wheels."""
     return [
-        State(_named(s.name, wheel, wheels), s.unit, s.freedom, s.twin and _named(s.twin, wheel, wheels), s.hidden)
+        State(_named(s.name, wheel, wheels), s.unit, s.freedom, s.twin and _named(s.twin, wheel, wheels), s.hidden, s.even)
         for s in states
     ]
 

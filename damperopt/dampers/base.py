@@ -12,7 +12,11 @@ from ..ports.sizing import Force, LimitEvent, Sized
 from ..quantities.named import DesignVariable, Output, State
 from ..quantities.record import Record
 
-__all__ = ["Context", "Damper"]
+__all__ = ["FORGOTTEN", "Context", "Damper"]
+
+
+FORGOTTEN = 1e3
+"""Rate [1/s] at which a linear model of hysteresis forgets the force of an earlier slide, which would be a root at 0."""
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,9 @@ from ..quantities.named import Output, State
 from ..quantities.record import Distance, Length, Torque, TorsionalDamping, refuse
 from ..quantities.record import Force as ForceNumber
 from ..quantities.units import Quantity
-from .base import Context, Damper
+from .base import FORGOTTEN, Context, Damper
 
 __all__ = ["Dahl", "FrictionDamper"]
-
-
-FORGOTTEN = 1e3
-"""Rate [1/s] at which the linear model forgets a torque that a slide has left; without it that would be a root at 0."""
 
 
 class _Friction(Damper):

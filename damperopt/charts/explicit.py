@@ -284,10 +284,10 @@ def _joined(pieces: list[_Piece], tolerance: float) -> list[Polyline] | None:
 def joint_boundary(
     study: Study, speed: float, load: float, frequencies: np.ndarray, margin: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping about the yaw axis at which the gear has the eigenvalue -margin + i w: an explicit curve.
+    """Stiffness and damping where the damper acts, at which the gear has the eigenvalue -margin + i w: an explicit curve.
 
-    With G(s) the receptance of the gear without damper at the strut, yaw angle over yaw torque, the characteristic equation
-    with k + s c at this joint is k + s c = -1/G(s), for any number of states.
+    With G(s) the receptance of the gear without damper there (for most gears yaw angle over yaw torque), the characteristic
+    equation with k + s c at this joint is k + s c = -1/G(s), for any number of states.
 
     Parameters
     ----------
@@ -305,10 +305,16 @@ def joint_boundary(
     tuple of ndarray
         (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
     """
-    free = {"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}
-    gear = linear_gear(study.replace(damper=free))
-    A = gear.matrices(speed, load)[0]
-    yaw_angle, yaw_rate = np.eye(len(A))[[gear.state_names.index(name) for name in ("yaw_angle", "yaw_rate")]]
-    joint = Joint(A, -yaw_rate / study.gear.yaw_inertia, yaw_angle, yaw_rate)
+
+    def matrix(stiffness: float, damping: float) -> np.ndarray:
+        free = {"topology": "rotational", "torsional_stiffness": stiffness, "torsional_damping": damping}
+        return np.asarray(linear_gear(study.replace(damper=free)).matrices(speed, load)[0])
+
+    A, inertia = matrix(0.0, 0.0), study.gear.yaw_inertia
+    # in units of the matrix' own entries, so that no digits are lost
+    units = inertia * np.abs(A).max(), inertia * np.abs(A).max() ** 0.5
+    change = np.hstack([(matrix(units[0], 0.0) - A) / units[0], (matrix(0.0, units[1]) - A) / units[1]])
+    forces, sizes, directions = np.linalg.svd(change)
+    joint = Joint(A, sizes[0] * forces[:, 0], directions[0, : len(A)], directions[0, len(A) :])
     k_psi, c_psi = joint.at(margin, 2 * np.pi * np.asarray(frequencies, float)).T
     return k_psi, c_psi

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
@@ -83,6 +84,11 @@ class Hydraulic(Damper):
             return F / c
         magnitude = corners.magnitude(F, c * orifice.smoothing)
         return 2 * F / (c + sqrt(c**2 + 4 * orifice.coefficient * magnitude))
+
+    def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
+        """c_lambda + 8/(3 pi) c_2 omega X of the damper alone, without what stands in series with it."""
+        c_2 = 0.0 if self.orifice is None else self.orifice.coefficient
+        return 0.0, design["c_lambda"] + 8 / (3 * math.pi) * c_2 * frequency * amplitude
 
     def series(self, design: Mapping[str, Expr]) -> Expr | None:
         """The key `series_stiffness`."""

@@ -83,8 +83,9 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
     limits = [
         ("yaw_angle", YAW_RANGE, f"the yaw angle exceeds {YAW_RANGE:g} rad"),
         ("unclosed", UNCLOSED, "the equations of the closed linkage are not solved"),
-        ("slip_angle", slip_range, f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"),
     ]
+    slip = f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"
+    limits += [(name, slip_range, slip) for name in names if name.startswith("slip_angle")]  # of every wheel
     stop = study.damper.stop
     if stop is not None and stop.stiffness is None:
         limits.append(("damper_stroke", stop.stroke, f"the damper meets its stop at {stop.stroke * 1e3:.4g} mm"))

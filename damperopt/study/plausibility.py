@@ -243,6 +243,8 @@ def _of_frequencies(study: Study, design: Mapping[str, float] | None) -> Iterato
     if design is None and study.variables:
         return
     stiffness = study.damper.linkage(dict(design or {}), study.material.youngs_modulus).torsional_stiffness
+    if not float(stiffness):  # free castering
+        return
     frequency = math.sqrt(max(float(stiffness), 0.0) / gear.yaw_inertia) / (2 * math.pi)
     yield Implausible(
         "gear.yaw_inertia", "the frequency of yaw against the stiffness of the damper, without the tyre", frequency, "Hz", usual

@@ -67,14 +67,18 @@ class Certificate:
     loads : tuple of float
         The loads, or the ends of the range [N].
     method : str
-        ``sturm`` or ``bernstein``.
+        ``sturm`` or ``bernstein``; with contact memory ``balls``.
     counterexample : tuple of float or None
         (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
         could not be decided.
     reason : str
         One sentence.
     boxes : int
-        Rectangles examined (``bernstein``).
+        Rectangles examined (``bernstein``), or boxes of frequency, speed and load (``balls``).
+    verdict : str or None
+        ``proved``, ``refuted`` or ``undecided``.
+    frequency : float or None
+        Of the root at the counterexample, or where it could not be decided [rad/s].
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
@@ -87,6 +91,8 @@ class Certificate:
     counterexample: tuple[float, float] | None
     reason: str
     boxes: int = 0
+    verdict: Literal["proved", "refuted", "undecided"] | None = None
+    frequency: float | None = None
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from scipy.optimize import minimize, minimize_scalar
 from ..results import OperatingPoint
 from ..study.study import Envelope, Study
 from .critical import along_loads, along_speeds
-from .linear import LinearGear
+from .gear import LinearGear
 
 __all__ = ["worst_points"]
 

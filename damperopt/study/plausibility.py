@@ -80,7 +80,8 @@ def implausible_masses(parts: Mapping[str, float]) -> list[Implausible]:
 
 def _of_tyre(study: Study) -> Iterator[Implausible]:
     tyre, radius = study.tyre, study.gear.wheel_radius
-    at_loads = [(load, *map(float, tyre.linear(load, tyre.pressure))) for load in study.envelope.loads]
+    numbers = ((load, *tyre.linear(load, tyre.pressure)) for load in study.envelope.loads)
+    at_loads = [[math.nan if x is None else float(x) for x in row] for row in numbers]  # a line may do without sigma
     seen: set[tuple[float, ...]] = set()
     for load, side, moment, sigma, a in at_loads:
         data = tuple(round(value, 9) for value in (side / load, moment / load, sigma, a))
@@ -91,7 +92,8 @@ def _of_tyre(study: Study) -> Iterator[Implausible]:
         yield Implausible("tyre", f"the slope of the side force, per radian and load, {where}", side / load, "1", (1.0, 30.0))
         if side:
             yield Implausible("tyre", f"the pneumatic trail {where}", moment / side, "m", (0.0, 2 * a))
-        yield Implausible("tyre.relaxation_length", f"the relaxation length {where}", sigma, "m", (0.5 * a, 10 * a))
+        if tyre.contact.RELAXES:
+            yield Implausible("tyre.relaxation_length", f"the relaxation length {where}", sigma, "m", (0.5 * a, 10 * a))
         yield Implausible("tyre.half_contact_length", f"the half contact length {where}", a, "m", (0.05 * radius, radius))
 
 

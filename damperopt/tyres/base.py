@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import model_validator
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.sizing import Peaks
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Length, Pressure, Record
+from ..quantities.record import Length, Pressure, Record, refuse
 from ..quantities.units import Quantity
 
 __all__ = ["ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
@@ -118,6 +120,8 @@ class ContactLine(Record):
     """Powers of V in the linear model."""
     RATIONAL: ClassVar[bool] = True
     """Whether its transfer functions are rational, so that states stand for all of it."""
+    RELAXES: ClassVar[bool] = True
+    """Whether it needs `relaxation_length`; a line that has another number for it says no."""
 
     contact: str
 
@@ -143,9 +147,16 @@ class ContactLine(Record):
         """
         raise NotImplementedError  # every line says it
 
-    def response(self, s: Expr, linear: Linear) -> tuple[Expr, Expr, Expr, Expr]:
-        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m]."""
+    def response(self, s: Expr, linear: Linear, speed: Expr = 1.0) -> tuple[Expr, Expr, Expr, Expr]:
+        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m].
+
+        The speed V [m/s] counts for lines with a clock of their own alone.
+        """
         raise NotImplementedError  # every line says it
+
+    def realisation(self, purpose: str) -> ContactLine:
+        """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
+        return self
 
     def leaves_out(self) -> tuple[str, ...]:
         """What this line does not hold, in words."""
@@ -163,8 +174,8 @@ class Tyre(Record):
 
     half_contact_length: Length
     """a, half the length of the footprint [m]."""
-    relaxation_length: Length
-    """sigma, decay length of the string's deflection before the footprint [m]."""
+    relaxation_length: Length | None = None
+    """sigma, decay length of the string's deflection before the footprint [m]; needed by all contact lines but ``moreland``."""
     tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
     """kappa, moment against the swivel rate of a footprint with a width, kappa theta'/V [N m^2/rad]."""
     slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
@@ -172,6 +183,16 @@ class Tyre(Record):
     pressure: Pressure | None = None
     """Of inflation [Pa]; needed by laws that depend on it."""
     contact: ContactLine
+
+    @model_validator(mode="after")
+    def _relaxes(self) -> Self:
+        given = self.relaxation_length is not None
+        if self.contact.RELAXES and not given:
+            raise refuse("relaxation_length", "missing key", "a length such as '0.3 m'")
+        if given and not self.contact.RELAXES:
+            words = f"contact {self.contact.contact} has a stiffness in its place"
+            raise refuse("relaxation_length", words, "no such key, or another contact line")
+        return self
 
     @property
     def states(self) -> tuple[State, ...]:

@@ -220,7 +220,7 @@ class _Run:
         z = np.zeros(model.unknowns)
         self._z = model.first_guess(self._x0, z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
-        self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
+        self._max_step = 2 * math.pi / fastest_rate(model.gear.visible(speed, load)[0]) / steps
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
         """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""

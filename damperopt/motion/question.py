@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from ..errors import ConfigError
-from ..stability.linear import LinearGear
+from ..stability.gear import LinearGear
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 from .measure import fastest_rate
@@ -50,7 +50,7 @@ def output_points(gear: LinearGear, speed: float, load: float, duration: float) 
     ConfigError
         If they would be too many.
     """
-    step = 2 * math.pi / fastest_rate(gear.matrices(speed, load)[0]) / PER_CYCLE
+    step = 2 * math.pi / fastest_rate(gear.visible(speed, load)[0]) / PER_CYCLE
     if duration > MAX_POINTS * step:
         longest = MAX_POINTS * step
         raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")

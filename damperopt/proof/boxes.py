@@ -6,7 +6,7 @@ On a box D lies in its own ball enclosure, and, by the mean value theorem, withi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import reduce
 from operator import mul
@@ -15,13 +15,12 @@ from typing import TypeAlias
 import flint
 
 from .balls import Transit, ball, transit_of
-from .quasi import Quasipolynomial, Slice, Tyre
+from .quasi import Quasipolynomial, Rows, Slice, Tyre
 from .rationals import decimal
 
 __all__ = ["Box", "Enclosure", "Strip", "Strips"]
 
 Q: TypeAlias = flint.fmpq
-Rows: TypeAlias = Mapping[tuple[int, int], flint.acb_poly]
 
 
 @dataclass(frozen=True)
@@ -76,54 +75,48 @@ class Strip:
         Ends [m/s], which may be one.
     margin : float
         mu [1/s]
-    degree, lift : int
-        Of D: lambda^degree has the coefficient V^lift.
+    degree : int
+        n: lambda^n has the coefficient 1.
     """
 
-    def __init__(self, part: Slice, speeds: tuple[Q, Q], margin: float, degree: int, lift: int):
+    def __init__(self, part: Slice, speeds: tuple[Q, Q], margin: float, degree: int):
         low, high = speeds
-        self._part, self.degree, self._lift = part, degree, lift
+        self._part, self.degree = part, degree
         self._mu = -flint.arb(decimal(margin))
         self._middle, self._over = flint.arb((low + high) / 2), ball(flint.arb(low), flint.arb(high))
         self._dV, self._dF = flint.arb((high - low) / 2), part.half_width
-        derivatives = {key: [row.derivative() for row in rows] for key, rows in part.over.items()}
-        self._at = _put_in(part.middle, self._middle)
-        self._all = _put_in(part.over, self._over)
-        self._by_s = {key: row.derivative() for key, row in self._all.items()}
-        self._by_V = _put_in(derivatives, self._over) if high > low else {}
-        self._by_F = _put_in(part.slope, self._over)
+        self._by_s = {key: row.derivative() for key, row in part.over.items()}
 
     def at(self, w: Q) -> flint.acb:
         """D at one frequency, in the middle of the strip."""
         s = flint.acb(self._mu, flint.arb(w))
-        f, m = _of_line(self._part.tyre_middle, transit_of(s * self._part.tyre_middle.length / self._middle))
-        return _sum(self._at, s, f, m)
+        line = transit_of(s * self._part.tyre_middle.length / self._middle)
+        return _Terms(_values(self._part.middle, s), self._middle, *_of_line(self._part.tyre_middle, line)).total()
 
     def on(self, w: tuple[Q, Q]) -> Enclosure:
         """D over an interval of frequencies."""
         s = flint.acb(self._mu, ball(flint.arb(w[0]), flint.arb(w[1])))
-        dw = flint.arb((w[1] - w[0]) / 2)
-        tyre, V = self._part.tyre_over, self._over
-        per = tyre.length / V
+        part, V = self._part, self._over
+        per = part.tyre_over.length / V
         z = s * per
         line = transit_of(z)
-        f, m = _of_line(tyre, line)
-        direct = _sum(self._all, s, f, m)
+        f_m = _of_line(part.tyre_over, line)
+        here = _Terms(_values(part.over, s), V, *f_m)
+        direct = here.total()
         if direct.abs_lower() > 0:
             return Enclosure(True, direct, {})
-        f_z = tyre.force[1] * line.delayed_z + tyre.force[2] * line.mean_z
-        m_z = tyre.moment[1] * line.delayed_z + tyre.moment[2] * line.chi_z
-        by_f, by_m = _slopes(self._all, s, f, m)
-        changes = f_z * by_f + m_z * by_m
-        weights = {"w": abs(_sum(self._by_s, s, f, m) + changes * per) * dw}
-        if self._by_V:
-            weights["V"] = abs(_sum(self._by_V, s, f, m) - changes * z / V) * self._dV
-        if self._by_F:
-            change = self._part.tyre_slope
-            f_F, m_F = _of_line(change, line)
-            longer = s * change.length / V
-            by_F = _sum(self._by_F, s, f, m) + by_f * f_F + by_m * m_F + changes * longer
-            weights["F"] = abs(by_F) * self._dF
+        by_f, by_m = here.by_f(), here.by_m()
+        f_z = part.tyre_over.force[1] * line.delayed_z + part.tyre_over.force[2] * line.mean_z
+        m_z = part.tyre_over.moment[1] * line.delayed_z + part.tyre_over.moment[2] * line.chi_z
+        by_z = f_z * by_f + m_z * by_m
+        by_s = _Terms(_values(self._by_s, s), V, *f_m).total() + by_z * per
+        weights = {"w": abs(by_s) * flint.arb((w[1] - w[0]) / 2)}
+        if self._dV > 0:
+            weights["V"] = abs(here.by_V() - by_z * z / V) * self._dV
+        if part.slope:
+            f_F, m_F = _of_line(part.tyre_slope, line)
+            by_F = _Terms(_values(part.slope, s), V, *f_m).total() + by_f * f_F + by_m * m_F
+            weights["F"] = abs(by_F + by_z * s * part.tyre_slope.length / V) * self._dF
         middle = self.at((w[0] + w[1]) / 2)
         reach = sum(weights.values(), flint.arb(0)).abs_upper()
         around = middle + flint.acb(flint.arb(0, reach), flint.arb(0, reach))
@@ -131,17 +124,15 @@ class Strip:
         return Enclosure(free, around, {name: float(value.abs_upper()) for name, value in weights.items()})
 
     def radius(self) -> Q:
-        """R with |D/(V^lift lambda^n) - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu."""
+        """R with |D/lambda^n - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu."""
         tyre, n = self._part.tyre_over, self.degree
         largest = (-self._mu * tyre.length / self._over).exp().abs_upper()  # of |E| and |phi1|; |chi| is at most half of it
         f = abs(tyre.force[0]) + (abs(tyre.force[1]) + abs(tyre.force[2])) * largest
         m = abs(tyre.moment[0]) + (abs(tyre.moment[1]) + abs(tyre.moment[2]) / 2) * largest
-        lead = self._over**self._lift
         sizes = [flint.arb(0)] * n
-        for (k, l), row in self._all.items():
-            for i in range(n):
-                coefficient = row[i] if i < row.length() else flint.acb(0)
-                sizes[i] = sizes[i] + abs(coefficient) * f**k * m**l / lead
+        for (k, l, j), row in self._part.over.items():
+            for i, coefficient in enumerate(row.coeffs()[:n]):
+                sizes[i] = sizes[i] + abs(coefficient) * f**k * m**l * self._over**j
         R = Q(1)
         while not sum((size * flint.arb(R) ** (i - n) for i, size in enumerate(sizes)), flint.arb(0)) < 1:
             R *= 2
@@ -150,38 +141,49 @@ class Strip:
     def beyond(self, R: Q) -> flint.arb:
         """Change of the argument of D from the frequency R on, where `radius` holds."""
         s = flint.acb(self._mu, flint.arb(R))
-        rest = self.at(R) / (s**self.degree * self._middle**self._lift)
-        return self.degree * (flint.arb.pi() / 2 - s.arg()) - rest.arg()
+        return self.degree * (flint.arb.pi() / 2 - s.arg()) - (self.at(R) / s**self.degree).arg()
 
 
-def _put_in(rows: Mapping[tuple[int, int], list[flint.arb_poly]], V: flint.arb) -> Rows:
-    return {key: flint.acb_poly([row(V) for row in part]) for key, part in rows.items()}
+class _Terms:
+    """Terms q f^k m^l V^j of D by (k, l, j), at one place or on one box."""
+
+    def __init__(self, values: list[tuple[tuple[int, int, int], flint.acb]], V: flint.arb, f: flint.acb, m: flint.acb):
+        self._values, self._V, self._f, self._m = values, V, f, m
+
+    def total(self) -> flint.acb:
+        return self._sum(lambda k, l, j: (1, k, l, j))
+
+    def by_f(self) -> flint.acb:
+        return self._sum(lambda k, l, j: (k, k - 1, l, j))
+
+    def by_m(self) -> flint.acb:
+        return self._sum(lambda k, l, j: (l, k, l - 1, j))
+
+    def by_V(self) -> flint.acb:
+        return self._sum(lambda k, l, j: (j, k, l, j - 1))
+
+    def _sum(self, rule: Callable[[int, int, int], tuple[int, int, int, int]]) -> flint.acb:
+        """With the powers that a rule makes of (k, l, j), and a factor: gathered by those of f and m first."""
+        gathered: dict[tuple[int, int], flint.acb] = {}
+        for key, value in self._values:
+            factor, k, l, j = rule(*key)
+            if factor:
+                term = value * self._V**j * factor if j else value * factor
+                gathered[k, l] = gathered[k, l] + term if (k, l) in gathered else term
+        total = flint.acb(0)
+        for (k, l), value in gathered.items():
+            total += reduce(mul, [self._f] * k + [self._m] * l, value)
+        return total
+
+
+def _values(rows: Rows, s: flint.acb) -> list[tuple[tuple[int, int, int], flint.acb]]:
+    return [(key, row(s)) for key, row in rows.items()]
 
 
 def _of_line(tyre: Tyre, line: Transit) -> tuple[flint.acb, flint.acb]:
     """f and m of a contact line."""
     f = tyre.force[0] + tyre.force[1] * line.delayed + tyre.force[2] * line.mean
     return f, tyre.moment[0] + tyre.moment[1] * line.delayed + tyre.moment[2] * line.chi
-
-
-def _product(f: flint.acb, k: int, m: flint.acb, l: int) -> flint.acb:
-    return reduce(mul, [f] * k + [m] * l, flint.acb(1))
-
-
-def _sum(rows: Rows, s: flint.acb, f: flint.acb, m: flint.acb) -> flint.acb:
-    return sum((row(s) * _product(f, k, m, l) for (k, l), row in rows.items()), flint.acb(0))
-
-
-def _slopes(rows: Rows, s: flint.acb, f: flint.acb, m: flint.acb) -> tuple[flint.acb, flint.acb]:
-    """Derivatives to f and to m."""
-    by_f = by_m = flint.acb(0)
-    for (k, l), row in rows.items():
-        value = row(s)
-        if k:
-            by_f += k * value * _product(f, k - 1, m, l)
-        if l:
-            by_m += l * value * _product(f, k, m, l - 1)
-    return by_f, by_m
 
 
 class Strips:
@@ -206,5 +208,5 @@ class Strips:
                 self._slices[loads] = self._characteristic.slice(*loads)
             made = self._slices[loads]
             D = self._characteristic
-            self._strips[speeds, loads] = Strip(made, speeds, self._margin, D.degree, D.lift)
+            self._strips[speeds, loads] = Strip(made, speeds, self._margin, D.degree)
         return self._strips[speeds, loads]

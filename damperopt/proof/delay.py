@@ -29,9 +29,12 @@ from .boxes import Box, Strips
 from .quasi import Quasipolynomial
 from .rationals import decimal
 
-__all__ = ["certify_delay"]
+__all__ = ["certify_delay", "roots_to_the_right"]
 
 Q: TypeAlias = flint.fmpq
+
+BITS = 80
+"""Of balls."""
 
 MAX_BOXES, MAX_BOXES_OF_RECTANGLE = 20_000, 200_000
 """Boxes that are examined before the answer is left open."""
@@ -39,8 +42,8 @@ MAX_BOXES, MAX_BOXES_OF_RECTANGLE = 20_000, 200_000
 THINNEST = Q(1, 2**34)
 """Width of a box over its middle at which it is not cut again."""
 
-SPEEDS, LOADS = 1.25, 1.05
-"""Ratio of the ends of the first intervals of speed and of load."""
+FREQUENCIES, SPEEDS, LOADS = 4, 2.0, 1.5
+"""Ratio of the ends of the first intervals of frequency, speed and load."""
 
 LOOKED_AT = 48
 """Speeds at each load where eigenvalues hint at a point to count at; a hint proves nothing."""
@@ -75,11 +78,33 @@ def certify_delay(study: Study, design: Mapping[str, float], margin: float, mode
     -------
     Certificate
     """
-    with flint.ctx.workprec(80):
+    with flint.ctx.workprec(BITS):
         return _Proof(study, design, margin, model).certificate()
 
 
+def roots_to_the_right(
+    study: Study, design: Mapping[str, float], margin: float, speed: float, load: float, model: LinearModel
+) -> int | None:
+    """Number of roots right of Re = -margin at one speed and load, proved; None where one is on the line or too near.
+
+    Parameters
+    ----------
+    study, design, margin, model
+        As for `certify_delay`.
+    speed, load : float
+        [m/s], [N]
+
+    Returns
+    -------
+    int or None
+    """
+    with flint.ctx.workprec(BITS):
+        return _Proof(study, design, margin, model).count(decimal(speed), decimal(load))
+
+
 class _Proof:
+    """Strips of one design, and what has been looked at."""
+
     def __init__(self, study: Study, design: Mapping[str, float], margin: float, model: LinearModel):
         assert model.structure is not None
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
@@ -91,12 +116,12 @@ class _Proof:
 
     def certificate(self) -> Certificate:
         for V, F in self._hints():
-            if self._count(V, F):
+            if self.count(V, F):
                 return self._refuted(V, F)
         for span in self._spans:
             try:
                 self._no_crossing(span)
-                if self._count(self._speeds[0], span[0]):
+                if self.count(self._speeds[0], span[0]):
                     return self._refuted(self._speeds[0], span[0])
             except _Open as left:
                 return self._left_open(left.box)
@@ -109,18 +134,18 @@ class _Proof:
         """Points where eigenvalues lie furthest beyond the margin, if any do."""
         low, high = (float(V) for V in self._speeds)
         speeds = np.clip(np.geomspace(low, high, LOOKED_AT), low, high)
-        loads = np.linspace(*self._envelope.loads[:2], 5) if self._envelope.load_is_range else self._envelope.loads
-        for load in loads:
+        ends = self._envelope.loads[0], self._envelope.loads[-1]
+        for load in np.linspace(*ends, 5).tolist() if self._envelope.load_is_range else self._envelope.loads:
             found = self._gear.abscissa(speeds, load)
             if found.max() > -self._margin:
-                yield decimal(float(speeds[found.argmax()])), decimal(float(load))
+                yield decimal(float(speeds[found.argmax()])), decimal(load)
 
     def _no_crossing(self, loads: tuple[Q, Q]) -> None:
         """Step 2, on the far field of step 1."""
         most = MAX_BOXES if loads[0] == loads[1] else MAX_BOXES_OF_RECTANGLE
         for F, V in itertools.product(_intervals(loads, LOADS), _intervals(self._speeds, SPEEDS)):
             strip = self._strips(V, F)
-            stack = [Box((low, high), V, F) for low, high in _octaves(strip.radius())]
+            stack = [Box((low, high), V, F) for low, high in _bands(strip.radius())]
             while stack:
                 box = stack.pop()
                 self._boxes += 1
@@ -133,11 +158,11 @@ class _Proof:
                     raise _Open(box, self._boxes)
                 stack += box.halves(cut)
 
-    def _count(self, V: Q, F: Q) -> int | None:
+    def count(self, V: Q, F: Q) -> int | None:
         """Roots right of the line at one speed and load, step 3; None where a root is on it, or too near to tell."""
         strip = self._strips((V, V), (F, F))
         R = strip.radius()
-        stack, change = list(reversed(list(_octaves(R)))), flint.arb(0)
+        stack, change = list(reversed(list(_bands(R)))), flint.arb(0)
         while stack:
             low, high = stack.pop()
             self._boxes += 1
@@ -160,14 +185,14 @@ class _Proof:
         beyond = self._gear.abscissa(np.array([float(speed) for speed in inside]), float(F))
         for i in np.argsort(-beyond)[:3]:
             speed = decimal(float(inside[i]))
-            if self._speeds[0] <= speed <= self._speeds[1] and self._count(speed, F):
+            if self._speeds[0] <= speed <= self._speeds[1] and self.count(speed, F):
                 return self._refuted(speed, F)
         words = f"undecided near {_place(V, F)}, {float(w):.6g} rad/s: a root lies on the line, or too near to tell"
         return self._outcome("undecided", None, float(w), words)
 
     def _refuted(self, V: Q, F: Q) -> Certificate:
         root = self._gear.roots(float(V), float(F), 1)[0, 0]
-        number = self._count(V, F)
+        number = self.count(V, F)
         words = f"missed at {_place(V, F)}: {number} roots right of the line, near {root.real:.6g} +- {abs(root.imag):.6g}i 1/s"
         return self._outcome("refuted", (float(V), float(F)), float(abs(root.imag)), words)
 
@@ -194,10 +219,10 @@ def _intervals(ends: tuple[Q, Q], ratio: float) -> list[tuple[Q, Q]]:
     return list(itertools.pairwise([low, *inner, high]))
 
 
-def _octaves(R: Q) -> Iterator[tuple[Q, Q]]:
-    """[0, R] in intervals that double, from the highest down."""
+def _bands(R: Q) -> Iterator[tuple[Q, Q]]:
+    """[0, R] in intervals of even ratio, from the highest down."""
     high = R
     while high > 1:
-        yield high / 2, high
-        high /= 2
+        yield high / FREQUENCIES, high
+        high /= FREQUENCIES
     yield Q(0), high

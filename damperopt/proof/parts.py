@@ -44,7 +44,8 @@ def parts_in_powers(
     # sampled in the envelope, at powers of two, which keep the numbers short
     V_0 = _power_of_two(math.sqrt(float(low) * float(high)))
     at_speeds = [V_0 * Q(2) ** (k - len(powers.speed) // 2) for k in range(len(powers.speed))]
-    F_powers, at_loads = (0,), list(loads)[:1]
+    F_powers: tuple[int, ...] = (0,)
+    at_loads = list(loads)[:1]
     if powers.load is not None:
         F_0 = _power_of_two(float(loads[-1]))
         F_powers, at_loads = powers.load, [F_0 / Q(2) ** k for k in range(len(powers.load))]

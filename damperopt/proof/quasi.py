@@ -2,8 +2,8 @@
 
 With f and m what force and moment take from the foremost contact point of a wheel (`tyres.string`), the gear is a matrix whose
 entries are rational in V and F_z and linear in f, m and the tyre's numbers; D is its characteristic polynomial, expanded over
-the rationals, times a power of V that clears denominators. lambda^n, n the states of the structure and one per wheel, has that
-power of V as its coefficient: D has no poles, and no impedance is left in a denominator, since every compliance has its state.
+the rationals. lambda^n, n the states of the structure and one per wheel, has the coefficient 1: D has no poles, and no
+impedance is left in a denominator, since every compliance has its state.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from .balls import ball, enclosed
 from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
 
-__all__ = ["Quasipolynomial", "Slice", "Tyre"]
+__all__ = ["Quasipolynomial", "Rows", "Slice", "Tyre"]
 
 Q: TypeAlias = flint.fmpq
+Rows: TypeAlias = dict[tuple[int, int, int], flint.acb_poly]
 
 BITS = 128
 """Of coefficients, which are exact, and of the tyre's numbers as balls."""
@@ -61,7 +62,9 @@ class Tyre:
 
 @dataclass(frozen=True)
 class Slice:
-    """D over an interval of loads; polynomials by powers (k, l) of f and m, each a list over powers of lambda of balls in V.
+    """D over an interval of loads: polynomials in lambda by the powers (k, l, j) of f, m and V that they are multiplied by.
+
+    Powers of V come last: in the polynomials in lambda, whose terms cancel where a root is near, V must not have spread yet.
 
     Attributes
     ----------
@@ -75,9 +78,9 @@ class Slice:
     """
 
     loads: tuple[Q, Q]
-    middle: dict[tuple[int, int], list[flint.arb_poly]]
-    over: dict[tuple[int, int], list[flint.arb_poly]]
-    slope: dict[tuple[int, int], list[flint.arb_poly]]
+    middle: Rows
+    over: Rows
+    slope: Rows
     tyre_middle: Tyre
     tyre_over: Tyre
     tyre_slope: Tyre
@@ -102,8 +105,8 @@ class Quasipolynomial:
 
     Attributes
     ----------
-    degree, lift : int
-        n, and the power of V that clears denominators.
+    degree : int
+        n
 
     Raises
     ------
@@ -135,11 +138,10 @@ class Quasipolynomial:
                 found = self._collected(terms, middle, at)
                 return Slice((low, high), found, found, {}, at, at, at)
             across, change = (Tyre.of(enclosed(f, [[over], data])) for f in (self._numbers, self._slopes))
-            slope: dict[tuple[int, int], list[flint.arb_poly]] = {}
+            slope: Rows = {}
             for derivative, factor in zip(by_load, (flint.arb(1), *change.others), strict=True):
                 for key, row in self._collected(derivative, over, across).items():
-                    old = slope.get(key, [flint.arb_poly([0])] * len(row))
-                    slope[key] = [a + b * factor for a, b in zip(old, row, strict=True)]
+                    slope[key] = slope.get(key, flint.acb_poly([0])) + row * flint.acb(factor)
             found, spread = self._collected(terms, middle, at), self._collected(terms, over, across)
             return Slice((low, high), found, spread, slope, at, across, change)
 
@@ -171,7 +173,9 @@ class Quasipolynomial:
         s, V, F, f, m, side, swivel, turn, softness, reach = ring.gens()
         zero, n, w = ring.constant(0), len(structure.states), structure.wheels
         size = n + 2 * w
-        lift = [max([0, *(-i for (i, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)]
+        lift = [
+            max([0, *(-i for (i, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)
+        ]
         self.lift = sum(lift)
 
         def entry(r: int, c: int) -> Any:
@@ -181,7 +185,9 @@ class Quasipolynomial:
         rows = [[(V ** lift[r] * s if r == c else zero) - entry(r, c) for c in range(n)] + [zero] * w for r in range(n)]
         for k in range(w):
             eta, theta = ([parts[0, 0][n + 2 * k + q, c] for c in range(n)] for q in (0, 1))
-            if any(part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0) for q in (0, 1) for c in range(n)):
+            if any(
+                part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0) for q in (0, 1) for c in range(n)
+            ):
                 raise CertificateError("position or swivel of a wheel hangs on speed or load in the linear model")
             for r in range(n):
                 B_F, B_M = entry(r, n + 2 * k), entry(r, n + 2 * k + 1)
@@ -193,13 +199,11 @@ class Quasipolynomial:
             rows.append([*path, *((s + V * softness if k == q else zero) for q in range(w))])
         return _determinant(rows, ring)
 
-    def _collected(
-        self, terms: Sequence[Any], load: flint.arb, tyre: Tyre
-    ) -> dict[tuple[int, int], list[flint.arb_poly]]:
-        """By powers of f and m: for each power of lambda a polynomial in V, with load and tyre put in."""
+    def _collected(self, terms: Sequence[Any], load: flint.arb, tyre: Tyre) -> Rows:
+        """By powers of f, m and V polynomials in lambda, with load and tyre put in."""
         values = (load, *tyre.others)
-        found: dict[tuple[int, int], dict[tuple[int, int], flint.arb]] = {}
-        highest, powers = 0, dict[tuple[int, int], flint.arb]()
+        found: dict[tuple[int, int, int], dict[int, flint.arb]] = {}
+        powers: dict[tuple[int, int], flint.arb] = {}
         for exponents, coefficient in terms:
             i, j, in_F, k, l = exponents[:5]
             for which, exponent in enumerate((in_F, *exponents[SIDE:])):
@@ -207,14 +211,10 @@ class Quasipolynomial:
                     if (which, exponent) not in powers:
                         powers[which, exponent] = values[which] ** exponent
                     coefficient = coefficient * powers[which, exponent]
-            row = found.setdefault((k, l), {})
-            row[i, j] = row[i, j] + coefficient if (i, j) in row else coefficient
-            highest = max(highest, j)
+            row = found.setdefault((k, l, j - self.lift), {})
+            row[i] = row[i] + coefficient if i in row else coefficient
         zero = flint.arb(0)
-        return {
-            key: [flint.arb_poly([row.get((i, j), zero) for j in range(highest + 1)]) for i in range(self.degree + 1)]
-            for key, row in found.items()
-        }
+        return {key: flint.acb_poly([row.get(i, zero) for i in range(max(row) + 1)]) for key, row in found.items()}
 
 
 def _determinant(rows: list[list[Any]], ring: Any) -> Any:

@@ -23,7 +23,7 @@ from ..tyres.string import transit
 from .gear import LinearGear, parts
 from .response import FOOTPRINT, Blocks, Structure
 
-__all__ = ["DelayGear", "Frozen", "delay_gear"]
+__all__ = ["DelayGear", "Frozen", "delay_gear", "frozen_of", "rightmost"]
 
 F, M = (FOOTPRINT.index(f"{name}[0]") for name in ("force", "moment"))
 SIDE, SWIVEL, TURN, SOFTNESS, REACH, LENGTH = range(6, 12)
@@ -90,6 +90,10 @@ class Frozen:
     def taken(self, which: np.ndarray) -> Frozen:
         """At some of the points."""
         return Frozen(self.A_0[which], self.b[which], self.numbers[which], self.speeds[which])
+
+    def alike(self) -> bool:
+        """Whether columns, tyre and speed are the same at all points."""
+        return all(bool((part == part[:1]).all()) for part in (self.b, self.numbers, self.speeds))
 
     def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A(lambda) and its derivative at s (p, k) [1/s], (p, k, n, n) each."""
@@ -184,18 +188,7 @@ class DelayGear(LinearGear):
             (m, count) complex [1/s], from right to left.
         """
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
-        model, count = self.frozen(V, F_z), len(self.named) if count is None else count
-        found = np.empty((V.size, count), complex)
-        order = _orders(model)
-        while order.size and (pending := order > 0).any():
-            for n in np.unique(order[pending]):
-                at = np.flatnonzero(order == n)
-                found[at], fine = _rightmost(model.taken(at), int(n), count)
-                coarser = at[~fine]
-                order[at] = 0
-                if n < ORDERS[-1]:
-                    order[coarser] = ORDERS[ORDERS.index(int(n)) + 1]
-        return found
+        return rightmost(self.frozen(V, F_z), len(self.named) if count is None else count)
 
     @property
     def principal(self) -> tuple[State, ...]:
@@ -236,10 +229,46 @@ def delay_gear(
     name = "contact_path" if structure.wheels == 1 else "contact_path_{}"
     paths = tuple(State(name.format(i + 1), "m", "string") for i in range(structure.wheels))
 
+    values = [design[name] for name in structure.design_names]
+
     def frozen(speeds: np.ndarray, loads: np.ndarray) -> Frozen:
-        return Frozen.of(structure.at(design, speeds, loads), structure.footprints(loads), speeds)
+        return frozen_of(structure, values, speeds, loads)
 
     return DelayGear(matrices, states, structure.powers, frozen, (*structure.states, *paths))
+
+
+def frozen_of(structure: Structure, design: Any, speeds: np.ndarray, loads: np.ndarray, data: Any = None) -> Frozen:
+    """Frozen gear at m points.
+
+    Parameters
+    ----------
+    structure : Structure
+    design : array_like
+        (d,) or (d, m) design variables [SI].
+    speeds, loads : ndarray
+        (m,) [m/s], [N].
+    data : array_like or None
+        (k, m) numbers of the study; None: its own.
+
+    Returns
+    -------
+    Frozen
+    """
+    return Frozen.of(structure.at(design, speeds, loads, data), structure.footprints(loads, data), speeds)
+
+
+def rightmost(model: Frozen, count: int) -> np.ndarray:
+    """The rightmost exact eigenvalues (p, count) [1/s] of a frozen gear at its points, from right to left."""
+    found = np.empty((len(model.speeds), count), complex)
+    order = _orders(model)
+    while (pending := order > 0).any():
+        for n in np.unique(order[pending]).tolist():
+            at = np.flatnonzero(order == n)
+            found[at], fine = _rightmost(model.taken(at), n, count)
+            order[at] = 0
+            if n < ORDERS[-1]:
+                order[at[~fine]] = ORDERS[ORDERS.index(n) + 1]
+    return found
 
 
 def _orders(model: Frozen) -> np.ndarray:

@@ -54,7 +54,7 @@ class DelayLine:
         speeds, found = self._speeds, []
         for column in self._roots.T[self._roots.imag.mean(axis=0) >= -1e-9]:
             away = column.real - level
-            brackets = [(k, k + 1) for k in np.flatnonzero(away[1:] * away[:-1] <= 0)]
+            brackets = [(k, k + 1) for k in np.flatnonzero(away[1:] * away[:-1] <= 0).tolist()]
             step = np.abs(np.diff(away))
             for k in range(1, len(speeds) - 1):
                 turns = (away[k] - away[k - 1]) * (away[k + 1] - away[k]) <= 0 and away[k - 1] * away[k + 1] > 0
@@ -85,7 +85,10 @@ class DelayLine:
         low, high = self._speeds[k - 1], self._speeds[k + 1]
         side = np.sign(column[k].real - level)
         best = minimize_scalar(
-            lambda V: side * self._real(column, k, level, V), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high}
+            lambda V: side * self._real(column, k, level, V),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 1e-9 * high},
         )
         if best.fun > 0:
             return [float(best.x)] if best.fun <= 1e-9 * (1 + abs(column[k])) else []

@@ -41,6 +41,11 @@ class LinearGear:
         """Position of a state."""
         return self.state_names.index(name)
 
+    def visible(self, speed: float, load: float) -> tuple[np.ndarray, tuple[str, ...]]:
+        """State matrix [1/s] at one speed and load without hidden states, which set no time scale, and names of the rest."""
+        kept = [i for i, state in enumerate(self.states) if not state.hidden]
+        return self.matrices(speed, load)[0][np.ix_(kept, kept)], tuple(self.states[i].name for i in kept)
+
     def roots(self, speeds: Any, loads: Any, count: int | None = None) -> np.ndarray:
         """Eigenvalues [1/s], (m, count), from right to left; all n, if no count is given."""
         found = np.linalg.eigvals(self.matrices(speeds, loads)).astype(complex)

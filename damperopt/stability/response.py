@@ -2,14 +2,14 @@
 
 x' = A x + B u, y = C x with u = (F_y, M_z) and y = (eta, theta), wheel after wheel. All that is no tyre is in it, the moment
 of the tread width too. The tyre closes the loop, u = T(lambda/V) y, so that the gear has its eigenvalues where
-det(lambda - A) det(1 - T C (lambda - A)^-1 B) vanishes, for any line of contact. Force and moment act where the gear says, which
-with rake is not where eta and theta are measured: B is not the transpose of C.
+det(lambda - A) det(1 - T C (lambda - A)^-1 B) vanishes, for any line of contact. Force and moment act where the gear says,
+which with rake is not where eta and theta are measured: B is not the transpose of C.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
@@ -112,18 +112,33 @@ class Structure:
             rows = [_numbers(line, tyre.tyre, wheel) for wheel in tyre.wheels]
             self.footprint = ca.Function("footprint", [dae.load, dae.data], [ca.densify(ca.vertcat(*rows))])
 
-    def at(self, design: Mapping[str, float], speeds: np.ndarray, loads: np.ndarray) -> Blocks:
-        """Blocks of a design at speeds (m,) [m/s] and loads (m,) [N]."""
+    def at(self, design: Any, speeds: np.ndarray, loads: np.ndarray, data: Any = None) -> Blocks:
+        """Blocks at m points.
+
+        Parameters
+        ----------
+        design : array_like
+            (d,) or (d, m) design variables [SI].
+        speeds, loads : ndarray
+            (m,) [m/s], [N].
+        data : array_like or None
+            (k, m) numbers of the study; None: its own.
+
+        Returns
+        -------
+        Blocks
+        """
         n, m = len(self.states), speeds.size
-        values = ca.repmat(ca.DM([design[name] for name in self.design_names]), 1, m)
-        whole = self.system(values, speeds.reshape(1, -1), loads.reshape(1, -1), self._data).full()
+        values = ca.DM(design) if np.ndim(design) == 2 else ca.repmat(ca.DM(design), 1, m)
+        data = self._data if data is None else ca.DM(data)
+        whole = self.system(values, speeds.reshape(1, -1), loads.reshape(1, -1), data).full()
         whole = whole.reshape(len(whole), m, len(whole)).transpose(1, 0, 2)
         return Blocks(whole[:, :n, :n], whole[:, :n, n:], whole[:, n:, :n])
 
-    def footprints(self, loads: np.ndarray) -> np.ndarray:
-        """Numbers of each wheel's footprint at loads (m,) [N], (m, w, 12)."""
+    def footprints(self, loads: np.ndarray, data: Any = None) -> np.ndarray:
+        """Numbers of each wheel's footprint at loads (m,) [N], (m, w, 12); of other data (k, m), if given."""
         assert self.footprint is not None
-        found = self.footprint(loads.reshape(1, -1), self._data).full()
+        found = self.footprint(loads.reshape(1, -1), self._data if data is None else ca.DM(data)).full()
         return found.reshape(self.wheels, loads.size, len(FOOTPRINT)).transpose(1, 0, 2)
 
 

@@ -25,7 +25,7 @@ def covers(study: Study) -> list[str]:
     linkage = "" if damper.ROTARY else f", {links}, {series}"
     found = [
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
-        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}."
+        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
     if names := [name for name, value in left if value is not None]:
@@ -38,6 +38,10 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _delay(study: Study) -> str:
+    return "" if study.tyre.contact.RATIONAL else ", with its exact delay"
 
 
 def leaves_out(study: Study) -> tuple[str, ...]:

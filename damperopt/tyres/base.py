@@ -118,6 +118,8 @@ class ContactLine(Record):
     """States of the line, of one wheel."""
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0, 1)
     """Powers of V in the linear model."""
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+    """Powers of F_z that it brings in beside those of the law; None: no polynomial in F_z."""
     RATIONAL: ClassVar[bool] = True
     """Whether its transfer functions are rational, so that states stand for all of it."""
     RELAXES: ClassVar[bool] = True
@@ -157,6 +159,10 @@ class ContactLine(Record):
     def realisation(self, purpose: str) -> ContactLine:
         """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
         return self
+
+    def least_wave(self) -> float:
+        """Contact lengths per wavelength of the motion below which this line is doubtful."""
+        return 3.0
 
     def leaves_out(self) -> tuple[str, ...]:
         """What this line does not hold, in words."""

@@ -34,6 +34,10 @@ class Memory(StringLine):
         """In an optimisation the Pade approximation of a low order."""
         return Pade(contact="pade", order=SEARCH_ORDER) if purpose == "search" else self
 
+    def least_wave(self) -> float:
+        """None: the delay is exact."""
+        return 0.0
+
     def leaves_out(self) -> tuple[str, ...]:
         """What a string is not."""
         return (

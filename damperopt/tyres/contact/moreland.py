@@ -20,6 +20,7 @@ class Moreland(ContactLine):
 
     STATES: ClassVar = (State("string_deflection", "m", "string"), State("contact_slip", "rad", "contact line"))
     SPEED_POWERS: ClassVar = (0, 1)
+    LOAD_POWERS: ClassVar = None  # k_y/C_Fa
     RELAXES: ClassVar = False
 
     contact: Literal["moreland"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import factorial
+from math import factorial, pi
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -46,6 +46,10 @@ class Pade(StringLine):
         odd = sum(c[k] * z ** (k - 1) for k in range(1, n + 1, 2))
         first = sum((2 * c[k - 1] - 4 * (c[k] if k <= n else 0)) * z ** (k - 2) for k in range(3, n + 2, 2))
         return 1 - 2 * z * odd / N, 2 * odd / N, first / N
+
+    def least_wave(self) -> float:
+        """That at which 2 a w/V is the order."""
+        return 2 * pi / self.order
 
     def leaves_out(self) -> tuple[str, ...]:
         """How far an approximation reaches."""

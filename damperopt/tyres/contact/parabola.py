@@ -26,9 +26,7 @@ class Parabola(StringLine):
     def weights(self, sigma: Expr, a: Expr) -> Weights:
         """The slope at the front is -y/sigma, that of the string before the footprint."""
         ends = a**2 / 3 + sigma * (a + sigma)
-        return Weights(
-            front=4 * a / 3 + sigma + 2 * a**2 / (3 * sigma), rear=2 * a / 3 + sigma, inside=0, ends=ends, twist=0
-        )
+        return Weights(front=4 * a / 3 + sigma + 2 * a**2 / (3 * sigma), rear=2 * a / 3 + sigma, inside=0, ends=ends, twist=0)
 
     def realisation(self, purpose: str) -> ContactLine:
         """In an optimisation the Pade approximation of its delay."""

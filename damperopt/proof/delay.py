@@ -36,7 +36,7 @@ Q: TypeAlias = flint.fmpq
 BITS = 80
 """Of balls."""
 
-MAX_BOXES, MAX_BOXES_OF_RECTANGLE = 20_000, 200_000
+MAX_BOXES, MAX_BOXES_OF_RECTANGLE = 12_000, 120_000
 """Boxes that are examined before the answer is left open."""
 
 THINNEST = Q(1, 2**34)

@@ -190,6 +190,13 @@ class DelayGear(LinearGear):
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
         return rightmost(self.frozen(V, F_z), len(self.named) if count is None else count)
 
+    def field_error(self, speed: float, load: float) -> float:
+        """How far, relative, `matrices` miss the rightmost exact eigenvalues: the contact line as a field was too coarse."""
+        exact = self.roots(speed, load)[0]
+        found = np.linalg.eigvals(self.matrices(speed, load)[0])
+        near = np.abs(exact[:, None] - found).min(axis=1) / (1 + np.abs(exact))
+        return float(near[exact.real > exact.real.max() - np.abs(exact).max()].max())
+
     @property
     def principal(self) -> tuple[State, ...]:
         """Of the structure and the foremost contact points: as many as there are roots when the delay vanishes."""

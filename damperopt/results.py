@@ -67,7 +67,7 @@ class Certificate:
     loads : tuple of float
         The loads, or the ends of the range [N].
     method : str
-        ``sturm`` or ``bernstein``; with contact memory ``balls``.
+        ``sturm`` or ``bernstein``; with contact memory ``balls``, over a range of loads ``balls, rectangle``.
     counterexample : tuple of float or None
         (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
         could not be decided.
@@ -93,6 +93,11 @@ class Certificate:
     boxes: int = 0
     verdict: Literal["proved", "refuted", "undecided"] | None = None
     frequency: float | None = None
+
+    @property
+    def over_a_range(self) -> bool:
+        """Whether `loads` are the ends of a range."""
+        return self.method in ("bernstein", "balls, rectangle")
 
 
 @dataclass(frozen=True)

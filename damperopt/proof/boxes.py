@@ -52,16 +52,31 @@ class Enclosure:
     Attributes
     ----------
     free : bool
-        D is not 0 anywhere on it.
-    whole : acb
-        Ball over D.
+        D is not 0 anywhere on it: all its values there lie in one open half plane.
     weights : dict
         How much each direction adds to the size of the enclosure: the largest is cut.
     """
 
     free: bool
-    whole: flint.acb
     weights: dict[str, float]
+
+
+def _beside(middle: flint.acb, moves: dict[str, flint.acb]) -> Enclosure:
+    """Whether middle + t_w D_w + t_V D_V + t_F D_F, |t| <= 1, keeps to one side of a line through 0.
+
+    Lines across the middle value, and along each move: a root that runs beside Re = -mu as frequency and speed change moves D
+    along one line, at a distance that stays.
+    """
+    weights: dict[str, float] = {}
+    for along in (None, *moves.values()):
+        normal = middle.mid() if along is None else flint.acb(0, 1) * along.mid()
+        away = (middle * normal.conjugate()).real
+        sizes = {name: abs((move * normal.conjugate()).real) for name, move in moves.items()}
+        if abs(away) > sum(sizes.values(), flint.arb(0)):
+            return Enclosure(True, {})
+        if along is None:
+            weights = {name: float(abs(move).abs_upper()) for name, move in moves.items()}
+    return Enclosure(False, weights)
 
 
 class Strip:
@@ -104,24 +119,20 @@ class Strip:
         here = _Terms(_values(part.over, s), V, *f_m)
         direct = here.total()
         if direct.abs_lower() > 0:
-            return Enclosure(True, direct, {})
+            return Enclosure(True, {})
         by_f, by_m = here.by_f(), here.by_m()
         f_z = part.tyre_over.force[1] * line.delayed_z + part.tyre_over.force[2] * line.mean_z
         m_z = part.tyre_over.moment[1] * line.delayed_z + part.tyre_over.moment[2] * line.chi_z
         by_z = f_z * by_f + m_z * by_m
         by_s = _Terms(_values(self._by_s, s), V, *f_m).total() + by_z * per
-        weights = {"w": abs(by_s) * flint.arb((w[1] - w[0]) / 2)}
+        moves = {"w": flint.acb(0, 1) * by_s * flint.arb((w[1] - w[0]) / 2)}
         if self._dV > 0:
-            weights["V"] = abs(here.by_V() - by_z * z / V) * self._dV
+            moves["V"] = (here.by_V() - by_z * z / V) * self._dV
         if part.slope:
             f_F, m_F = _of_line(part.tyre_slope, line)
             by_F = _Terms(_values(part.slope, s), V, *f_m).total() + by_f * f_F + by_m * m_F
-            weights["F"] = abs(by_F + by_z * s * part.tyre_slope.length / V) * self._dF
-        middle = self.at((w[0] + w[1]) / 2)
-        reach = sum(weights.values(), flint.arb(0)).abs_upper()
-        around = middle + flint.acb(flint.arb(0, reach), flint.arb(0, reach))
-        free = bool(middle.abs_lower() > reach)
-        return Enclosure(free, around, {name: float(value.abs_upper()) for name, value in weights.items()})
+            moves["F"] = (by_F + by_z * s * part.tyre_slope.length / V) * self._dF
+        return _beside(self.at((w[0] + w[1]) / 2), moves)
 
     def radius(self) -> Q:
         """R with |D/lambda^n - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu."""

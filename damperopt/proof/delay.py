@@ -199,10 +199,8 @@ class _Proof:
     def _outcome(self, verdict: Any, point: tuple[float, float] | None, frequency: float | None, reason: str) -> Certificate:
         envelope = self._envelope
         speeds = envelope.speed.min, envelope.speed.max
-        proved = verdict == "proved"
-        return Certificate(
-            proved, self._margin, speeds, envelope.loads, "balls", point, reason, self._boxes, verdict, frequency
-        )
+        proved, method = verdict == "proved", "balls, rectangle" if envelope.load_is_range else "balls"
+        return Certificate(proved, self._margin, speeds, envelope.loads, method, point, reason, self._boxes, verdict, frequency)
 
 
 def _place(V: Q, F: Q) -> str:

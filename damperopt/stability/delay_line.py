@@ -16,7 +16,7 @@ from scipy.optimize import brentq, minimize_scalar
 from .delay import DelayGear
 from .modes import followed
 
-__all__ = ["DelayLine"]
+__all__ = ["PER_DECADE", "DelayLine"]
 
 PER_DECADE, FEWEST = 160, 40
 """Speeds at which roots are found."""

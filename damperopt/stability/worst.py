@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.ndimage import maximum_filter
 from scipy.optimize import minimize, minimize_scalar
@@ -9,6 +11,8 @@ from scipy.optimize import minimize, minimize_scalar
 from ..results import OperatingPoint
 from ..study.study import Envelope, Study
 from .critical import along_loads, along_speeds
+from .delay import DelayGear
+from .delay_line import PER_DECADE
 from .gear import LinearGear
 
 __all__ = ["worst_points"]
@@ -45,7 +49,7 @@ def worst_points(
     At each load the maximum over speed is global: beyond the refined samples, the speeds at which a root crosses the level
     found, eigenvalues of a pencil, show whether any speed lies above it; if one does, it is refined in turn (level-set
     method, as for the H-infinity norm). Over a load range that holds at both ends; between them the peaks of a grid are
-    refined, which is no proof: `certify` is.
+    refined, which is no proof: `certify` is. With a delay there are no such pencils: peaks of a fine row of speeds are refined.
     """
     if isinstance(envelope, Study):
         envelope = envelope.envelope
@@ -137,11 +141,15 @@ def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: i
 
     if low == high:
         return [point(low)]
+    delayed = isinstance(gear, DelayGear)
+    samples = max(samples, math.ceil(PER_DECADE * math.log10(high / low))) if delayed else samples
     speeds = np.geomspace(low, high, samples)
     speeds[0], speeds[-1] = low, high
     height = gear.abscissa(speeds, load)
     found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
 
+    if delayed:
+        return sorted(found, key=lambda p: -p.abscissa)
     line = along_speeds(gear, load, low, high)
     for _ in range(20):
         best = max(p.abscissa for p in found)

@@ -1,4 +1,4 @@
-"""Contact lines: transfer functions, eigenvalues and critical speeds of an independent prototype, to the digits that it gives."""
+"""Contact lines: transfer functions, eigenvalues, critical speeds of an independent prototype, to the digits that it gives."""
 
 from __future__ import annotations
 

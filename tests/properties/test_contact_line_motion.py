@@ -1,4 +1,4 @@
-"""Motions with contact memory: against eigenvalues, and against a brute-force history of points that the ground carries along."""
+"""Motions with contact memory: against eigenvalues, and a brute-force history of points that the ground carries along."""
 
 from __future__ import annotations
 

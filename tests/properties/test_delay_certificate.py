@@ -84,7 +84,7 @@ def brink():
     return of, brentq(excess, 4000.0, 6000.0, xtol=1e-8)
 
 
-@pytest.mark.parametrize("share", [1e-2, 1e-4])
+@pytest.mark.parametrize("share", [1e-2, 1e-4, 1e-6])
 def test_narrow_windows(brink, share):
     """Just beyond the brink proved; just before it, stable at every speed of a grid and unstable between, refuted."""
     of, c_psi = brink
@@ -100,11 +100,12 @@ def test_narrow_windows(brink, share):
     assert low.real > -0.1 - 1e-9
 
 
-def test_at_the_brink_nothing_is_proved_falsely(brink):
+def test_at_the_brink_nothing_is_said_falsely(brink):
+    """A part in 1e7 of the damping to either side, where the root is 1e-9 1/s from the line."""
     of, c_psi = brink
-    found = certify(of.replace(damper__torsional_damping=c_psi), {}, 0.1)
-    assert found.verdict != "proved"
-    assert "undecided" in found.reason or found.counterexample is not None
+    before, beyond = (certify(of.replace(damper__torsional_damping=c_psi * (1 + share)), {}, 0.1) for share in (-1e-7, 1e-7))
+    assert before.verdict != "proved"
+    assert beyond.verdict != "refuted"
 
 
 def trap(low=20.0, high=20.0):
@@ -121,7 +122,8 @@ def trap(low=20.0, high=20.0):
     design = {"c_lambda": 4e6 / ell**2, "k_lambda": 2e5 / ell**2, "L": 0.6, "gamma": float(np.deg2rad(31.0))}
     ranges = "\n".join(f"  {name}: {value!r}" for name, value in design.items())
     text = text[:start] + chain % float(1.45e6 / ell**2) + text[end:] + f"design:\n{ranges}\n"
-    needed = "requirements: {stability_margin: 0.1, limit_torque: 12500, lug_distance: {min: 0.4, max: 1.1}, reach: {min: 0.1, max: 0.4}}\n"
+    needed = "requirements: {stability_margin: 0.1, limit_torque: 12500, "
+    needed += "lug_distance: {min: 0.4, max: 1.1}, reach: {min: 0.1, max: 0.4}}\n"
     return loads(text + needed), design
 
 

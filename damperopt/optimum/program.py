@@ -140,9 +140,9 @@ class _Common:
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
-        shifted = [problem.shifted_matrix(design, data, V[i], F_z[i]) for i in range(slots)]
-        shifted = [(A + corrections[i] * ca.SX.eye(A.shape[0])) / rate[i] for i, A in enumerate(shifted)]
-        self.slots = Slots([characteristic_polynomial(A) for A in shifted], rate)
+        polynomial = _polynomial(problem)
+        slots_in = ([design, data, V[i], F_z[i], corrections[i], rate[i]] for i in range(slots))
+        self.slots = Slots([[1.0, *ca.vertsplit(polynomial(*given))] for given in slots_in], rate)
 
     def numbers(
         self,
@@ -179,6 +179,15 @@ class _Common:
         x0 = np.clip(self.problem.scaled(design), lower, upper)
         around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
         return Limits(np.maximum(lower, x0 - around), np.minimum(upper, x0 + around), x0)
+
+
+def _polynomial(problem: DesignProblem) -> ca.Function:
+    """(design, data, speed, load, correction, rate) -> a_1, ..., a_n of the shifted polynomial, time scaled by the rate."""
+    inputs = [ca.SX.sym("design", len(problem.design_names)), ca.SX.sym("data", len(problem.data))]
+    inputs += [ca.SX.sym(name) for name in ("speed", "load", "correction", "rate")]
+    A = problem.shifted_matrix(*inputs[:4])
+    scaled = (A + inputs[4] * ca.SX.eye(A.shape[0])) / inputs[5]
+    return ca.Function("polynomial", inputs, [ca.vertcat(*characteristic_polynomial(scaled)[1:])])
 
 
 class _Program:

@@ -280,8 +280,8 @@ def rightmost(model: Frozen, count: int) -> np.ndarray:
 
 def _orders(model: Frozen) -> np.ndarray:
     """Order of the field at each point."""
-    rolling = model.at(np.zeros((len(model.speeds), 1), complex))[0][:, 0]
-    fastest = np.maximum(*(np.abs(np.linalg.eigvals(A)).max(axis=1) for A in (rolling, model.A_0.astype(complex))))
+    rolling = model.at(np.zeros((len(model.speeds), 1), complex))[0][:, 0].real
+    fastest = np.abs(np.linalg.eigvals(np.stack([rolling, model.A_0]))).max(axis=(0, 2))
     turns = fastest * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds) + BEYOND
     return np.array(ORDERS)[np.minimum(np.searchsorted(ORDERS, turns), len(ORDERS) - 1)]
 

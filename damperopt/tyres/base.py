@@ -189,6 +189,7 @@ class Tyre(Record):
     pressure: Pressure | None = None
     """Of inflation [Pa]; needed by laws that depend on it."""
     contact: ContactLine
+    """How the string meets the ground: the name of a contact line, or ``{kind: name, ...}`` with keys of its own."""
 
     @model_validator(mode="after")
     def _relaxes(self) -> Self:

@@ -22,6 +22,7 @@ from typing import Any, TypeAlias
 import flint
 import numpy as np
 
+from ..errors import ConfigError
 from ..results import Certificate
 from ..stability.linear import LinearModel
 from ..study.study import Study
@@ -136,9 +137,16 @@ class _Proof:
         speeds = np.clip(np.geomspace(low, high, LOOKED_AT), low, high)
         ends = self._envelope.loads[0], self._envelope.loads[-1]
         for load in np.linspace(*ends, 5).tolist() if self._envelope.load_is_range else self._envelope.loads:
-            found = self._gear.abscissa(speeds, load)
+            found = self._looked_at(speeds, load)
             if found.max() > -self._margin:
                 yield decimal(float(speeds[found.argmax()])), decimal(load)
+
+    def _looked_at(self, speeds: np.ndarray, load: float) -> np.ndarray:
+        """Abscissae [1/s], or nothing but -inf where eigenvalues are out of reach: hints alone."""
+        try:
+            return self._gear.abscissa(speeds, load)
+        except ConfigError:
+            return np.full(len(speeds), -np.inf)
 
     def _no_crossing(self, loads: tuple[Q, Q]) -> None:
         """Step 2, on the far field of step 1."""
@@ -182,7 +190,7 @@ class _Proof:
         w, V, F = box.middle
         speeds = [V * (1 + Q(*step.as_integer_ratio()) * side) for step in ASIDE for side in (1, -1)]
         inside = [speed for speed in speeds if self._speeds[0] <= speed <= self._speeds[1]]
-        beyond = self._gear.abscissa(np.array([float(speed) for speed in inside]), float(F))
+        beyond = self._looked_at(np.array([float(speed) for speed in inside]), float(F))
         for i in np.argsort(-beyond)[:3]:
             speed = decimal(float(inside[i]))
             if self._speeds[0] <= speed <= self._speeds[1] and self.count(speed, F):
@@ -191,10 +199,11 @@ class _Proof:
         return self._outcome("undecided", None, float(w), words)
 
     def _refuted(self, V: Q, F: Q) -> Certificate:
-        root = self._gear.roots(float(V), float(F), 1)[0, 0]
-        number = self.count(V, F)
-        words = f"missed at {_place(V, F)}: {number} roots right of the line, near {root.real:.6g} +- {abs(root.imag):.6g}i 1/s"
-        return self._outcome("refuted", (float(V), float(F)), float(abs(root.imag)), words)
+        words, frequency = f"missed at {_place(V, F)}: {self.count(V, F)} roots right of the line", None
+        if np.isfinite(self._looked_at(np.array([float(V)]), float(F))[0]):
+            root = self._gear.roots(float(V), float(F), 1)[0, 0]
+            words, frequency = f"{words}, near {root.real:.6g} +- {abs(root.imag):.6g}i 1/s", float(abs(root.imag))
+        return self._outcome("refuted", (float(V), float(F)), frequency, words)
 
     def _outcome(self, verdict: Any, point: tuple[float, float] | None, frequency: float | None, reason: str) -> Certificate:
         envelope = self._envelope

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ConfigError
 from ..quantities.named import State
 from ..tyres.string import transit
 from .gear import LinearGear, parts
@@ -28,7 +29,7 @@ __all__ = ["DelayGear", "Frozen", "delay_gear", "frozen_of", "rightmost"]
 F, M = (FOOTPRINT.index(f"{name}[0]") for name in ("force", "moment"))
 SIDE, SWIVEL, TURN, SOFTNESS, REACH, LENGTH = range(6, 12)
 
-ORDERS = (8, 12, 16, 24, 32, 48, 64)
+ORDERS = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 """Of the contact line as a field; the least is taken that holds 2 a w/V for the fastest motion w, and `BEYOND` more."""
 
 BEYOND = 6
@@ -281,9 +282,17 @@ def rightmost(model: Frozen, count: int) -> np.ndarray:
 def _orders(model: Frozen) -> np.ndarray:
     """Order of the field at each point."""
     rolling = model.at(np.zeros((len(model.speeds), 1), complex))[0][:, 0].real
-    fastest = np.abs(np.linalg.eigvals(np.stack([rolling, model.A_0]))).max(axis=(0, 2))
+    roots = np.linalg.eigvals(np.stack([rolling, model.A_0]))
+    # what decays within a part of its turn needs no resolution
+    fastest = np.where(roots.real > -np.abs(roots.imag), np.abs(roots), 0.0).max(axis=(0, 2))
     turns = fastest * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds) + BEYOND
-    return np.array(ORDERS)[np.minimum(np.searchsorted(ORDERS, turns), len(ORDERS) - 1)]
+    if (turns > ORDERS[-1]).any():
+        least = float((model.speeds * turns / ORDERS[-1]).max())
+        raise ConfigError(
+            f"tyre.contact: found the speed {model.speeds[turns.argmax()]:.4g} m/s, at which a motion of {fastest.max():.3g} "
+            f"rad/s has {turns.max():.0f} rad within the contact line; allowed with a delay: speeds from about {least:.3g} m/s"
+        )
+    return np.array(ORDERS)[np.searchsorted(ORDERS, turns)]
 
 
 def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ array, an interval and a graph. This module alone asks for CasADi, and only when
 
 from __future__ import annotations
 
+import cmath
 import math
 import sys
 from collections.abc import Callable, Sequence
@@ -35,12 +36,14 @@ __all__ = [
 ]
 
 Expr: TypeAlias = Any
-"""A float, an array, a ball or a symbol."""
+"""A float, a complex number, an array, a ball or a symbol."""
 
 
 def _applied(name: str, x: Expr) -> Expr:
     if isinstance(x, (int, float)):
         return getattr(math, name)(x)
+    if isinstance(x, complex):
+        return getattr(cmath, name)(x)
     if isinstance(x, (np.ndarray, np.generic)):
         return getattr(np, {"atan": "arctan"}.get(name, name))(x)
     method = getattr(x, name, None) or getattr(x, {"atan": "arctan"}[name])

@@ -256,7 +256,7 @@ class _Run:
         self._x0 = self._relaxed(np.array(disturbance.start(model.state_names)))
         self._z = model.first_guess(self._x0, self._z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
-        self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
+        self._max_step = 2 * math.pi / fastest_rate(model.gear.visible(speed, load)[0]) / steps
 
     def _relaxed(self, given: np.ndarray) -> np.ndarray:
         """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""

@@ -27,7 +27,7 @@ def goes_through_the_commands(study: Study, folder: Path) -> None:
     low, high, load = study.envelope.speed.min, study.envelope.speed.max, study.envelope.loads[0]
     gear = damperopt.linear_gear(study)
     modes = damperopt.track_modes(gear, np.linspace(low, high, 12), load)
-    assert len(modes.names) == len(gear.states)  # a conjugate pair has one name
+    assert len(modes.names) >= len(gear.principal)  # a conjugate pair has one name
     write_modes(folder / "modes.csv", [modes])
     worst = damperopt.worst_points(gear, study.envelope)[0]
     speeds = np.linspace(low, high, 200)

@@ -284,7 +284,9 @@ class Tyre(Record):
 
     @model_validator(mode="after")
     def _relaxes(self) -> Self:
-        given = self.relaxation_length is not None
+        given, law = self.relaxation_length is not None, getattr(self, "LAW", None)
+        if not given and law is not None and "relaxation_length" in law.GIVES:
+            return self
         if self.contact.RELAXES and not given:
             raise refuse("relaxation_length", "missing key", "a length such as '0.3 m'")
         if given and not self.contact.RELAXES:

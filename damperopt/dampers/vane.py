@@ -16,6 +16,7 @@ from ..quantities.record import Length, Record, Stress, refuse
 from ..quantities.units import Quantity
 from ..strength.materials import allowable_stress
 from .base import Context, Damper
+from .oil import Oil, damping_factor
 
 __all__ = ["RotaryOrifice", "Vane"]
 
@@ -49,6 +50,8 @@ class Vane(Damper):
     """n, with as many fixed partitions between them [1]."""
     orifice: RotaryOrifice | None = None
     """Quadratic part of the torque."""
+    oil: Oil | None = None
+    """Its temperature; left out: that at which the damping is given."""
     displacement: Annotated[float, Quantity("m^3/rad", above=0, example="1e-4 m^3/rad")] | None = None
     """D, where it is given: then the oil is compressible, and the vanes are made at least as large [m^3/rad]."""
     sweep: Annotated[float, Quantity("rad", above=0, below=3.1415, example="50 deg")] = 0.8726646259971648
@@ -77,7 +80,7 @@ class Vane(Damper):
         corners: Corners,
     ) -> Force:
         """T = c psi' + c_2 psi' |psi'|."""
-        c, orifice = design["c_vane"], self.orifice
+        c, orifice = design["c_vane"] * damping_factor(self.oil, context.temperature), self.orifice
         if orifice is None:
             return Force(c * rate)
         return Force(c * rate + orifice.coefficient * rate * corners.magnitude(rate, orifice.smoothing))
@@ -92,7 +95,7 @@ class Vane(Damper):
         corners: Corners,
     ) -> Expr:
         """The positive root of c_2 w^2 + c w = |T|, in the form that also holds for c_2 = 0."""
-        c, T, orifice = design["c_vane"], force, self.orifice
+        c, T, orifice = design["c_vane"] * damping_factor(self.oil, context.temperature), force, self.orifice
         if orifice is None:
             return T / c
         magnitude = corners.magnitude(T, c * orifice.smoothing)
@@ -105,7 +108,8 @@ class Vane(Damper):
     def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
         """c + 8/(3 pi) c_2 omega X, without the oil in series."""
         c_2 = 0.0 if self.orifice is None else self.orifice.coefficient
-        return 0.0, design["c_vane"] + 8 / (3 * math.pi) * c_2 * frequency * amplitude
+        c = design["c_vane"] * damping_factor(self.oil, context.temperature)
+        return 0.0, c + 8 / (3 * math.pi) * c_2 * frequency * amplitude
 
     def parts(self, event: LimitEvent, model: Any) -> Sized:
         """Housing, caps, rotor, vanes, partitions and oil; the height of the vanes meets the pressure."""
@@ -131,6 +135,10 @@ class Vane(Damper):
         return Sized({"damper": steel.density * metal * (1 + model.damper_fittings_fraction) + oil}, (size,))
 
     def leaves_out(self) -> tuple[str, ...]:
-        """The oil, where no displacement is given."""
-        words = () if self.displacement is not None else ("compressibility of the oil (damper.displacement)",)
-        return (*words, "oil that is cold or hot, and cavitation where the relieved chamber runs empty")
+        """The oil, where no displacement or temperature is given."""
+        words = ["cavitation where the relieved chamber runs empty"]
+        if self.displacement is None:
+            words.append("compressibility of the oil (damper.displacement)")
+        if self.oil is None:
+            words.append("oil that is cold or hot (damper.oil)")
+        return tuple(words)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar, Literal
+
 import casadi as ca
 import flint
 import numpy as np
@@ -9,13 +11,18 @@ import pytest
 from basic_twin import parameters
 from memory_twin import F_Z, S, T, characteristic, gear, study_text
 
-from damperopt import loads
+from damperopt import certify, linear_gear, loads
 from damperopt.errors import CertificateError
+from damperopt.expressions.calculus import atan, exp, sin, sqrt
 from damperopt.proof.balls import SMALL, ball, enclosed, transit_of
 from damperopt.proof.boxes import Strips
 from damperopt.proof.quasi import Quasipolynomial
 from damperopt.proof.rationals import decimal
 from damperopt.stability.linear import LinearModel
+from damperopt.study.envelope import Envelope
+from damperopt.tyres.assembly import tyre
+from damperopt.tyres.base import Linear as ForceLine
+from damperopt.tyres.base import SlipLaw
 
 Q = flint.fmpq
 
@@ -75,8 +82,38 @@ def test_graphs_are_enclosed():
 ARCTANGENT = "law: arctangent, cornering_coefficient: 0.4, aligning_coefficient: 0.03, aligning_slip_limit: 0.17"
 
 
-@pytest.fixture(scope="module", params=["stiffness", "arctangent", "rake", "third order"])
+class Growing(SlipLaw):
+    """Every number of the tyre grows with the load, none as a polynomial."""
+
+    LOAD_POWERS: ClassVar = None
+
+    law: Literal["growing"]
+
+    def linear(self, load, pressure):
+        share = load / 150e3
+        force = 4.4e5 * sin(2 * atan(share))
+        return ForceLine(force, 0.08 * force * sqrt(share), 0.3 * exp(0.2 * share), 0.1 * sqrt(share))
+
+    def force(self, alpha_F, load, pressure):
+        return self.linear(load, pressure).cornering_stiffness * alpha_F
+
+    def moment(self, alpha_M, load, pressure, corners):
+        return self.linear(load, pressure).aligning_stiffness * alpha_M
+
+
+def growing(**keys):
+    """A study whose whole tyre hangs on the load."""
+    study = loads(study_text(gear(S, **keys)))
+    shared = {"half_contact_length": 0.1, "relaxation_length": 0.3, "tread_width_moment": 570.0, "contact": "memory"}
+    law = tyre(Growing).model_validate({"law": "growing", **shared})
+    return type(study).model_construct(**{key: getattr(study, key) for key in type(study).model_fields} | {"tyre": law})
+
+
+@pytest.fixture(scope="module", params=["stiffness", "arctangent", "rake", "third order", "growing"])
 def strips(request):
+    if request.param == "growing":
+        study = growing()
+        return Strips(Quasipolynomial(study, LinearModel(study).structure, {}), 0.3)
     p = gear(S, phi=0.15 if request.param == "rake" else 0.0)
     text = study_text(p, order=3 if request.param == "third order" else 5)
     if request.param == "arctangent":
@@ -150,3 +187,18 @@ def test_far_field():
         for s in R * np.exp(1j * np.linspace(-1.57, 1.57, 9)):
             s = complex(max(s.real, -2.0), s.imag)
             assert abs(characteristic(s, V, F_Z, p) * V / scale / s**5 - 1) < 1
+
+
+@pytest.mark.parametrize("c_psi", [350.0, 600.0, 2000.0])
+def test_range_of_loads_that_move_the_whole_tyre(c_psi):
+    """Proved or refuted as eigenvalues of a grid say; the tyre is another one at every load."""
+    study = growing(c_psi=c_psi)
+    ranged = study.model_copy(update={"envelope": study.envelope.model_copy(update={"vertical_load": LOADS})})
+    V, F = (x.ravel() for x in np.meshgrid(np.geomspace(5, 100, 80), np.linspace(8e4, 1.6e5, 15)))
+    worst = linear_gear(study, {}).abscissa(V, F).max()
+    certificate = certify(ranged, {}, 0.0)
+    assert certificate.method == "balls, rectangle"
+    assert certificate.verdict == ("proved" if worst < 0 else "refuted"), (worst, certificate.reason)
+
+
+LOADS = Envelope.model_validate({"speed": {"min": 5, "max": 100}, "vertical_load": {"min": 8e4, "max": 1.6e5}}).vertical_load

@@ -124,6 +124,7 @@ class ExactSimulator:
         outputs = {"yaw_acceleration": dae.ode[dae.index("yaw_rate")], **dae.outputs}
         self.unknowns, self.units = dae.z.numel(), dae.units
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
+        self._hidden = {state.name for state in dae.states if state.hidden}
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
@@ -183,6 +184,7 @@ class ExactSimulator:
         time = time[: values.shape[1]]
         named = dict(zip(names, values, strict=True))
         states = {name: named.pop(name) for name in self.state_names}
+        states = {name: row for name, row in states.items() if name not in self._hidden}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"

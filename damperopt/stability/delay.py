@@ -192,7 +192,7 @@ class DelayGear(LinearGear):
         return rightmost(self.frozen(V, F_z), len(self.named) if count is None else count)
 
     def field_error(self, speed: float, load: float) -> float:
-        """How far, relative, `matrices` miss exact eigenvalues, of those that oscillate and the rightmost: a line too coarse."""
+        """How far, relative, `matrices` miss exact eigenvalues: the rightmost, and those that oscillate."""
         exact = self.roots(speed, load)[0]
         found = np.linalg.eigvals(self.matrices(speed, load)[0])
         near = np.abs(exact[:, None] - found).min(axis=1) / (1 + np.abs(exact))

@@ -140,8 +140,8 @@ class Strip:
 
         return here.total(), moves
 
-    def radius(self) -> Q:
-        """R with |D/lambda^n - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu."""
+    def radius(self) -> Q | None:
+        """R with |D/lambda^n - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu; None where a coefficient has no bound."""
         tyre, n = self._part.tyre_over, self.degree
         largest = (-self._mu * tyre.length / self._over).exp().abs_upper()  # of |E| and |phi1|; |chi| is at most half of it
         f = abs(tyre.force[0]) + (abs(tyre.force[1]) + abs(tyre.force[2])) * largest
@@ -150,6 +150,8 @@ class Strip:
         for (k, l, j), row in self._part.over.items():
             for i, coefficient in enumerate(row.coeffs()[:n]):
                 sizes[i] = sizes[i] + abs(coefficient) * f**k * m**l * self._over**j
+        if not all(size.is_finite() for size in sizes):
+            return None
         R = Q(1)
         while not sum((size * flint.arb(R) ** (i - n) for i, size in enumerate(sizes)), flint.arb(0)) < 1:
             R *= 2

@@ -159,9 +159,19 @@ class _Proof:
     def _no_crossing(self, loads: tuple[Q, Q]) -> None:
         """Step 2, on the far field of step 1."""
         most = MAX_BOXES if loads[0] == loads[1] else MAX_BOXES_OF_RECTANGLE
-        for F, V in itertools.product(_intervals(loads, LOADS), _intervals(self._speeds, SPEEDS)):
-            strip = self._strips(V, F)
-            stack = [Box((low, high), V, F) for low, high in _bands(strip.radius())]
+        slabs = list(itertools.product(_intervals(loads, LOADS), _intervals(self._speeds, SPEEDS)))
+        while slabs:
+            F, V = slabs.pop()
+            R = self._strips(V, F).radius()
+            if R is None:  # numbers of the tyre have no bound on so wide a slab
+                whole = Box((Q(0), Q(1)), V, F)
+                cut = "V" if F[0] == F[1] else "F"
+                low, high = getattr(whole, cut)
+                if not high - low > THINNEST * high:
+                    raise _Open(whole, self._boxes)
+                slabs += [(half.F, half.V) for half in whole.halves(cut)]
+                continue
+            stack = [Box((low, high), V, F) for low, high in _bands(R)]
             while stack:
                 box = stack.pop()
                 self._boxes += 1
@@ -178,6 +188,8 @@ class _Proof:
         """Roots right of the line at one speed and load, step 3; None where a root is on it, or too near to tell."""
         strip = self._strips((V, V), (F, F))
         R = strip.radius()
+        if R is None:
+            return None
         stack, change = list(reversed(list(_bands(R)))), flint.arb(0)
         while stack:
             low, high = stack.pop()

@@ -11,6 +11,7 @@ import pytest
 from basic_twin import parameters
 from memory_twin import F_Z, S, T, characteristic, gear, study_text
 
+import damperopt
 from damperopt import certify, linear_gear, loads
 from damperopt.errors import CertificateError
 from damperopt.expressions.calculus import atan, exp, sin, sqrt
@@ -202,3 +203,10 @@ def test_range_of_loads_that_move_the_whole_tyre(c_psi):
 
 
 LOADS = Envelope.model_validate({"speed": {"min": 5, "max": 100}, "vertical_load": {"min": 8e4, "max": 1.6e5}}).vertical_load
+
+
+def test_a_slab_on_which_the_tyre_has_no_bound_is_cut(configs):
+    """Over 8 to 18 kN at once a length of the tyre estimated by TR R-64 is a ball that holds 0."""
+    study = damperopt.load(configs / "nose_gear_tr_r64.yaml")
+    study = study.replace(tyre__contact="memory", envelope__vertical_load={"min": 8e3, "max": 18e3})
+    assert damperopt.certify(study, study.start).verdict == "proved"

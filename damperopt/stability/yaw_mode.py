@@ -28,8 +28,10 @@ def yaw_mode(A: np.ndarray, angle: int, rate: int) -> tuple[complex, np.ndarray,
     """
     roots, right = np.linalg.eig(A)
     left = np.linalg.inv(right)
-    # participation of both states of yaw, which no unit of a state changes
-    part = np.abs(right[angle] * left[:, angle]) + np.abs(right[rate] * left[:, rate])
+    # participation of both states of yaw, which no unit of a state changes, in that of all: where two real roots meet and part
+    # as a pair, all of them grow without bound
+    shares = np.abs(right.T * left)
+    part = (shares[:, angle] + shares[:, rate]) / shares.sum(axis=1)
     part[roots.imag <= 0] = -1.0
     i = int(part.argmax())
     s = complex(roots[i]) if part[i] >= 0 else complex(np.nan, np.nan)

@@ -76,14 +76,18 @@ class Certificate:
     loads : tuple of float
         The loads, or the ends of the range [N].
     method : str
-        ``sturm`` or ``bernstein``.
+        ``sturm`` or ``bernstein``; with contact memory ``balls``, over a range of loads ``balls, rectangle``.
     counterexample : tuple of float or None
         (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
         could not be decided.
     reason : str
         One sentence.
     boxes : int
-        Rectangles examined (``bernstein``).
+        Rectangles examined (``bernstein``), or boxes of frequency, speed and load (``balls``).
+    verdict : str or None
+        ``proved``, ``refuted`` or ``undecided``.
+    frequency : float or None
+        Of the root at the counterexample, or where it could not be decided [rad/s].
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
@@ -96,11 +100,18 @@ class Certificate:
     counterexample: tuple[float, float] | None
     reason: str
     boxes: int = 0
+    verdict: Verdict | None = None
+    frequency: float | None = None
 
     @property
-    def verdict(self) -> Verdict:
-        """In a word."""
-        return "proved" if self.proved else "undecided" if self.counterexample is None else "refuted"
+    def over_a_range(self) -> bool:
+        """Whether `loads` are the ends of a range."""
+        return self.method in ("bernstein", "balls, rectangle")
+
+    @property
+    def found(self) -> Verdict:
+        """The verdict; where none was given, that of the other fields."""
+        return self.verdict or ("proved" if self.proved else "undecided" if self.counterexample is None else "refuted")
 
 
 @dataclass(frozen=True)
@@ -270,7 +281,7 @@ class DesignResult(_Record):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        found: Verdict = "undecided" if self.certificate is None else self.certificate.verdict
+        found: Verdict = "undecided" if self.certificate is None else self.certificate.found
         if self.verdict != found:
             raise _impossible(f"a verdict that is not that of the certificate, {found}", self.verdict)
         if self.status == "solved":
@@ -290,7 +301,12 @@ class DesignResult(_Record):
         proof, check, decay = self.certificate, self.verification, self.decay
         assert proof is not None
         assert check is not None
-        if not proof.proved or proof.counterexample is not None or proof.margin < self.stability_margin:
+        if (
+            proof.found != "proved"
+            or not proof.proved
+            or proof.counterexample is not None
+            or proof.margin < self.stability_margin
+        ):
             raise _impossible("status solved without a certificate that proves its margin", proof.reason)
         decayed = decay is None or (decay.passed and decay.ratio <= decay.limit)
         if not (check.passed and check.grid_passed and decayed):

@@ -49,7 +49,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     _show_loads(console, result)
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
-    loads = f"{' to ' if certificate.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
+    loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
     console.print(
         f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
         f"{certificate.speed[1]:g} m/s, {loads} kN",

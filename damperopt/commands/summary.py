@@ -19,7 +19,7 @@ from ..quantities.record import quantity_of
 from ..quantities.shown import rounded, scale, unit_text
 from ..results import Certificate, OperatingPoint
 from ..stability.critical import CriticalSpeed
-from ..stability.wavelength import ENOUGH, Wavelength
+from ..stability.wavelength import Wavelength
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
@@ -136,26 +136,26 @@ def show_analysis(
             else f"No critical speed between {low:g} and {high:g} m/s."
         )
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
         console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
-    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     console.print("Not checked: " + escape("; ".join((*left_out, *leaves_out(study)))), soft_wrap=True, style="dim")
     if wave is not None:
-        _show_wavelength(console, wave)
+        _show_wavelength(console, wave, study.tyre.contact.least_wave())
 
 
-def _show_wavelength(console: Console, wave: Wavelength) -> None:
+def _show_wavelength(console: Console, wave: Wavelength, least: float) -> None:
     console.print(
         f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.2g} contact lengths, at {wave.speed:g} m/s",
         soft_wrap=True,
     )
-    if wave.contact_lengths < ENOUGH:
+    if wave.contact_lengths < least:
         console.print(
-            f"[yellow]Below {ENOUGH:g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
+            f"[yellow]Below {least:.3g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
             "the verdict holds for this tyre law, and may not for the tyre.",
             soft_wrap=True,
         )

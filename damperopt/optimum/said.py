@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..results import DesignResult
-from ..stability.linear import LinearGear
+from ..stability.gear import LinearGear
 from ..stability.yaw_mode import yaw_modes
 from ..strength.fatigue import Basquin, words_of
 from ..strength.materials import words_about
@@ -43,7 +43,7 @@ def said_of(study: Study, result: DesignResult, gear: LinearGear) -> dict[str, A
     answer = Answer.of(result, yaw_frequencies(study, gear))
     flags = (*implausible_answer(study, answer), *implausible_masses(answer.parts), *implausible(study, result.design))
     return {
-        "verdict": "undecided" if proof is None else proof.verdict,
+        "verdict": "undecided" if proof is None else proof.found,
         "witness": {} if proof is None or proof.counterexample is None else _witness(gear, *proof.counterexample),
         "covers": tuple(covers(study)),
         "leaves_out": (*left_out_by_number(study, result.design), *leaves_out(study)),
@@ -53,9 +53,8 @@ def said_of(study: Study, result: DesignResult, gear: LinearGear) -> dict[str, A
 
 
 def _witness(gear: LinearGear, speed: float, load: float) -> dict[str, float]:
-    """Point of the envelope, and the frequency at which the gear moves there [SI, Hz]."""
-    roots = np.linalg.eigvals(gear.matrices([speed], load)[0])
-    return {"speed": speed, "load": load, "frequency": abs(float(roots[roots.real.argmax()].imag)) / (2 * np.pi)}
+    """Point of the envelope, and the frequency at which the gear moves there [rad/s]."""
+    return {"speed": speed, "load": load, "frequency": abs(float(gear.roots([speed], [load], 1)[0, 0].imag))}
 
 
 def yaw_frequencies(study: Study, gear: LinearGear) -> list[float]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
+from ..linkages.assembly import layouts
 from ..linkages.elastic import elastic_linkage
 from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
@@ -101,6 +102,9 @@ def figures_of(result: DesignResult) -> tuple[DesignFigure, ...]:
     if result.stability is None or result.mass is None:
         return ()
     absent = {"decay"} if result.decay is None else set()
+    absent |= (
+        {"linkage", "chart", "region"} if layouts()[result.topology].ROTARY else set()
+    )  # no members, and no spring to vary
     absent |= set() if any(s.value != 0 for s in result.sensitivities) else {"tornado"}
     return tuple(figure for figure in _FIGURES if figure.name not in absent)
 

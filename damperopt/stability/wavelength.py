@@ -11,10 +11,7 @@ import numpy as np
 from ..study.study import Study
 from .modes import ModeTable
 
-__all__ = ["ENOUGH", "Wavelength", "shortest_wavelength"]
-
-ENOUGH = 3.0
-"""Contact lengths per wavelength below which a tyre without memory of its contact line is doubtful."""
+__all__ = ["Wavelength", "shortest_wavelength"]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .linear import LinearGear
+from .gear import LinearGear
 
 __all__ = ["yaw_mode", "yaw_modes"]
 
@@ -57,8 +57,14 @@ def yaw_modes(gear: LinearGear, speeds: Any, loads: Any) -> np.ndarray:
     >>> import damperopt
     >>> gear = damperopt.linear_gear(damperopt.load("configs/nose_gear_thota.yaml"))
     >>> s = yaw_modes(gear, [40.0], 150e3)[0]
-    >>> round(s.real, 3), round(s.imag, 2)
-    (1.32, 70.88)
+    >>> f"{s:.2f}"
+    '1.32+70.87j'
     """
-    angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
-    return np.array([yaw_mode(A, angle, rate)[0] for A in gear.matrices(speeds, loads)])
+    roots, shares = gear.modes(speeds, loads)
+    names = [state.name for state in gear.principal]
+    part = shares[:, names.index("yaw_angle")] + shares[:, names.index("yaw_rate")]
+    part[roots.imag <= 0] = -1.0
+    top = part.argmax(axis=1)[:, None]
+    found = np.take_along_axis(roots, top, axis=1)[:, 0]
+    found[np.take_along_axis(part, top, axis=1)[:, 0] < 0] = complex(np.nan, np.nan)
+    return found

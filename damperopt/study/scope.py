@@ -25,7 +25,7 @@ def covers(study: Study) -> list[str]:
     linkage = "" if damper.ROTARY else f", {_chain(damper)}"
     found = [
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
-        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}."
+        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
     if words := study.tyre.origin():
         found.append(words)
@@ -53,6 +53,10 @@ def _chain(damper: Any) -> str:
     found = [f"elastic by their sections: {', '.join(sized)}"] if sized else []
     found += [f"as stiff as the study says: {', '.join(words.get(p, p) for p in given)}"] if given else []
     return "; ".join(found + ([f"rigid: {', '.join(rigid)}"] if rigid else []))
+
+
+def _delay(study: Study) -> str:
+    return "" if study.tyre.contact.RATIONAL else ", with its exact delay"
 
 
 def leaves_out(study: Study) -> tuple[str, ...]:

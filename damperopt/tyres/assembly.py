@@ -55,7 +55,7 @@ def tyre(law: type[SlipLaw]) -> type[Any]:
 
 def _or_none(field: FieldInfo) -> Any:
     """The type of a field that may be left out as well."""
-    given: Any = Annotated[(field.annotation, *field.metadata)]
+    given: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
     return given | None
 
 

@@ -11,12 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self
 
+from pydantic import model_validator
+
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.sizing import Peaks
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Pressure, Record
+from ..quantities.record import Pressure, Record, refuse
 from ..quantities.units import Quantity
 from .over_load import LengthOverLoad, OverLoad
 
@@ -145,8 +147,12 @@ class ContactLine(Record):
     """States of the line, of one wheel."""
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0, 1)
     """Powers of V in the linear model."""
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+    """Powers of F_z that it brings in beside those of the law; None: no polynomial in F_z."""
     RATIONAL: ClassVar[bool] = True
     """Whether its transfer functions are rational, so that states stand for all of it."""
+    RELAXES: ClassVar[bool] = True
+    """Whether it needs `relaxation_length`; a line that has another number for it says no."""
 
     contact: str
 
@@ -172,9 +178,20 @@ class ContactLine(Record):
         """
         raise NotImplementedError  # every line says it
 
-    def response(self, s: Expr, linear: Linear) -> tuple[Expr, Expr, Expr, Expr]:
-        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m]."""
+    def response(self, s: Expr, linear: Linear, speed: Expr = 1.0) -> tuple[Expr, Expr, Expr, Expr]:
+        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m].
+
+        The speed V [m/s] counts for lines with a clock of their own alone.
+        """
         raise NotImplementedError  # every line says it
+
+    def realisation(self, purpose: str) -> ContactLine:
+        """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
+        return self
+
+    def least_wave(self) -> float:
+        """Contact lengths per wavelength of the motion below which this line is doubtful."""
+        return 3.0
 
     def leaves_out(self) -> tuple[str, ...]:
         """What this line does not hold, in words."""
@@ -253,8 +270,9 @@ class Tyre(Record):
 
     half_contact_length: LengthOverLoad
     """a, half the length of the footprint [m]; a number, or a table over load."""
-    relaxation_length: LengthOverLoad
-    """sigma, decay length of the string's deflection before the footprint [m]; a number, or a table over load."""
+    relaxation_length: LengthOverLoad | None = None
+    """sigma, decay length of the string's deflection before the footprint [m]; a number, or a table over load; needed by all
+    contact lines but ``moreland``."""
     tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
     """kappa, moment against the swivel rate of a footprint with a width, kappa theta'/V [N m^2/rad]."""
     slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
@@ -262,6 +280,19 @@ class Tyre(Record):
     pressure: Pressure | None = None
     """Of inflation [Pa]; needed by laws that depend on it."""
     contact: ContactLine
+    """How the string meets the ground: the name of a contact line, or ``{kind: name, ...}`` with keys of its own."""
+
+    @model_validator(mode="after")
+    def _relaxes(self) -> Self:
+        given, law = self.relaxation_length is not None, getattr(self, "LAW", None)
+        if not given and law is not None and "relaxation_length" in law.GIVES:
+            return self
+        if self.contact.RELAXES and not given:
+            raise refuse("relaxation_length", "missing key", "a length such as '0.3 m'")
+        if given and not self.contact.RELAXES:
+            words = f"contact {self.contact.contact} has a stiffness in its place"
+            raise refuse("relaxation_length", words, "no such key, or another contact line")
+        return self
 
     @property
     def states(self) -> tuple[State, ...]:

@@ -63,7 +63,9 @@ def yaw_modes(gear: LinearGear, speeds: Any, loads: Any) -> np.ndarray:
     roots, shares = gear.modes(speeds, loads)
     names = [state.name for state in gear.principal]
     part = shares[:, names.index("yaw_angle")] + shares[:, names.index("yaw_rate")]
-    part[roots.imag <= 0] = -1.0
+    # a line with memory has roots of its own without end; those of the gear are the rightmost, as many as without it
+    last = np.sort(roots.real, axis=1)[:, -min(len(names), roots.shape[1])][:, None]
+    part[(roots.imag <= 0) | (roots.real < last - 1e-9 * np.abs(last))] = -1.0
     top = part.argmax(axis=1)[:, None]
     found = np.take_along_axis(roots, top, axis=1)[:, 0]
     found[np.take_along_axis(part, top, axis=1)[:, 0] < 0] = complex(np.nan, np.nan)

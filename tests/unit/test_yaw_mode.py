@@ -6,7 +6,7 @@ import pytest
 import damperopt
 from damperopt.proof.check import check_damping
 from damperopt.stability.linear import LinearGear
-from damperopt.stability.yaw_mode import yaw_mode
+from damperopt.stability.yaw_mode import yaw_mode, yaw_modes
 
 W, ZETA = 75.0, 0.06
 """Of the yaw alone [rad/s], [1]."""
@@ -41,3 +41,14 @@ def test_nor_in_the_check(main_gear):
     ratio, _, load = check_damping(study, study.start, Model())
     assert ratio == pytest.approx(ZETA, abs=0.01)
     assert load == 150e3
+
+
+def test_waves_of_the_contact_line_do_not_pass_for_the_yaw(configs):
+    """With memory: of all roots the one that follows the yaw of the gear with a line that follows its leading point."""
+    study = damperopt.load(configs / "main_gear.yaml")
+    design = {"c_lambda": 3e4, "I_arm": 1e-6, "L": 0.56, "gamma": 0.75, "b": 0.18, "A_piston": 7e-4, "rod_diameter": 0.012}
+    design |= {"s_damper": 0.01, "A_link": 2.3e-4, "A_support": 1.7e-4}
+    speeds = np.geomspace(5, 100, 40)
+    lines = [study.replace(tyre__contact=contact) for contact in ("leading_point", "memory")]
+    point, memory = (yaw_modes(damperopt.linear_gear(line, design), speeds, 150e3) for line in lines)
+    np.testing.assert_allclose(memory.imag, point.imag, rtol=0.25)  # waves of the line are six times as fast

@@ -75,7 +75,9 @@ def shown_margin(value: float) -> str:
     >>> shown_margin(1e-9), shown_margin(0.128), shown_margin(-0.02), shown_margin(12.3)
     ('0', '+0.13', '-0.02', '+12')
     """
-    return "0" if abs(value) < NONE_LEFT else f"{value:+.2g}" if abs(value) < 100 else ">100"
+    if abs(value) < NONE_LEFT:
+        return "0"
+    return ">100" if value > 100 else f"{value:+.{4 if abs(value) < 0.01 else 2 if abs(value) < 10 else 0}f}"
 
 
 def margin_words(row: MarginRow) -> str:
@@ -125,7 +127,7 @@ def critical_margins(result: DesignResult) -> list[Line]:
             f"{row.factor:g}",
             margin,
         )
-        found.append(Line(cells, margin == "0"))
+        found.append(Line(cells, row.value < NONE_LEFT))
     return found
 
 
@@ -150,7 +152,7 @@ def margins_by_case(result: DesignResult) -> tuple[list[str], list[Line]]:
     lines = []
     for key, values in sorted(found.items(), key=lambda item: (parts.index(item[0][0]), min(item[1].values()))):
         cells = [shown_margin(values[case]) if case in values else "" for case in cases]
-        lines.append(Line((*key, *cells), "0" in cells))
+        lines.append(Line((*key, *cells), min(values.values()) < NONE_LEFT))
     return [case.replace("_", " ") for case in cases], lines
 
 

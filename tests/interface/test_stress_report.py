@@ -190,6 +190,15 @@ def test_parts_are_sized_by_the_case_that_leaves_them_nothing():
     assert [(row.part, row.case) for row in margins.critical_rows(found[::-1])] == [("arm", "a"), ("link", "b")]
 
 
+def test_a_margin_that_is_missing_is_as_strong_as_one_that_is_nothing():
+    found = [margin("arm", "yield", "a", -0.02), margin("arm", "yield", "b", 0.3), margin("link", "column", "b", 0.006)]
+    result = damperopt.DesignResult.model_construct(loads=(load(), load(case="b")), margins=tuple(found))
+    assert [(line.cells[-1], line.strong) for line in margins.critical_margins(result)] == [("-0.02", True), ("+0.0060", False)]
+    cases, lines = margins.margins_by_case(result)
+    assert cases == ["a", "b"]
+    assert [(line.cells[3:], line.strong) for line in lines] == [(("-0.02", "+0.30"), True), (("", "+0.0060"), False)]
+
+
 def test_rigid_parts_are_sized_by_the_largest_torque(main_gear):
     result = damperopt.DesignResult.model_construct(loads=(load(sizing=True), load(case="b", off="needs x")), margins=())
     first, second = margins.load_cases(result)

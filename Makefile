@@ -3,17 +3,20 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
+# a file of tests stays in one process, so that its tests share what they set up
+SHARED := -n 2 --dist loadfile --no-loadscope-reorder
+
 .PHONY: optimise test verify check format benchmark docs notebooks clean
 
 optimise: $(VENV)/installed
 	$(BIN)/damperopt optimise configs/main_gear.yaml
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not verify"
+	$(BIN)/python -m pytest $(SHARED) -m "not verify"
 
 # before a version: what takes longer than a commit may wait
 verify: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m verify
+	$(BIN)/python -m pytest $(SHARED) -m verify
 
 # green before each commit: format, lint, types, import contracts, fast tests
 check: $(VENV)/installed-dev
@@ -21,7 +24,7 @@ check: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -q -m "not slow and not verify"
+	$(BIN)/python -m pytest $(SHARED) -q -m "not slow and not verify"
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format .

@@ -141,7 +141,7 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     ConfigError
         If the study lacks what a combination needs.
     """
-    if not topologies and study.damper.topology not in optimisable():
+    if not topologies and not study.variables:
         raise ConfigError(
             f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
             f"allowed: {', '.join(optimisable())} (or use 'damperopt analyse')"

@@ -55,7 +55,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     design = {variable.name: ca.SX.sym(variable.name) for variable in study.damper.variables()}
     speed, load, yaw_torque = ca.SX.sym("speed"), ca.SX.sym("load"), ca.SX.sym("yaw_torque")
 
-    x = {state.name: ca.SX.sym(state.name) for state in gear.STATES}
+    x = {state.name: ca.SX.sym(state.name) for state in gear.states()}
     wheels = gear.wheels(x, speed, load)
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
@@ -65,8 +65,8 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     torque = damper_torque(damper, link, design, corners, attachment, Context(load, speed))
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)
 
-    states = [*gear.STATES, *(state for own in tyre_states for state in own), *_chain(torque.states, damper.STATES)]
-    rates = [motion.rates[state.name] for state in gear.STATES]
+    states = [*gear.states(), *(state for own in tyre_states for state in own), *_chain(torque.states, damper.STATES)]
+    rates = [motion.rates[state.name] for state in gear.states()]
     rates += [rate for contact in contacts for rate in contact.rates]
     rates += [torque.rates[name] for name in torque.states]
     outputs = dict(torque.outputs) | dict(motion.outputs)
@@ -109,7 +109,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
 def _of_wheel(states: Sequence[State], wheel: int, wheels: int) -> list[State]:
     """States of one wheel's tyre, by names of their own where there are several wheels."""
     return [
-        State(_named(s.name, wheel, wheels), s.unit, s.freedom, s.twin and _named(s.twin, wheel, wheels), s.hidden)
+        State(_named(s.name, wheel, wheels), s.unit, s.freedom, s.twin and _named(s.twin, wheel, wheels), s.hidden, s.even)
         for s in states
     ]
 

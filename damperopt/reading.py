@@ -11,7 +11,7 @@ from typing import Any
 
 from .errors import ConfigError
 
-__all__ = ["MOST_RESULT_BYTES", "MOST_STUDY_BYTES", "code_point", "printable", "quoted", "text_of", "unprintable"]
+__all__ = ["MOST_RESULT_BYTES", "MOST_STUDY_BYTES", "bytes_of", "code_point", "printable", "quoted", "text_of", "unprintable"]
 
 MOST_STUDY_BYTES = 256 * 1024
 """Of a study or a sweep; the largest in use have 10 kB, and YAML is read at some 100 kB/s."""
@@ -84,8 +84,8 @@ def code_point(character: int | str) -> str:
     return f"U+{character if isinstance(character, int) else ord(character):04X}"
 
 
-def text_of(path: str | Path, kind: str = "a readable YAML file", most_bytes: int = MOST_STUDY_BYTES) -> str:
-    """Text of a file that a user names.
+def bytes_of(path: str | Path, kind: str, most_bytes: int) -> bytes:
+    """Content of a file that a user names.
 
     Parameters
     ----------
@@ -97,12 +97,12 @@ def text_of(path: str | Path, kind: str = "a readable YAML file", most_bytes: in
 
     Returns
     -------
-    str
+    bytes
 
     Raises
     ------
     ConfigError
-        If it cannot be read, is no regular file (a pipe blocks, a device never ends), is too large or no UTF-8 text.
+        If it cannot be read, is no regular file (a pipe blocks, a device never ends), or is too large.
     """
     where = printable(path)
     try:
@@ -122,10 +122,35 @@ def text_of(path: str | Path, kind: str = "a readable YAML file", most_bytes: in
         raise ConfigError(f"{where}: cannot be read: {error}; allowed: {kind}") from error
     if len(data) > most_bytes:
         raise ConfigError(f"{where}: is larger than {most_bytes // 1024} KiB; allowed: {kind}, no larger")
+    return data
+
+
+def text_of(path: str | Path, kind: str = "a readable YAML file", most_bytes: int = MOST_STUDY_BYTES) -> str:
+    """Text of a file that a user names.
+
+    Parameters
+    ----------
+    path : str or Path
+    kind : str
+        What is allowed, for the message.
+    most_bytes : int
+        Larger files are refused.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ConfigError
+        As `bytes_of`, and if it is no UTF-8 text.
+    """
+    data = bytes_of(path, kind, most_bytes)
     try:
         return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
+        where = printable(path)
         raise ConfigError(f"{where}:{line}: is not UTF-8 text (byte {error.start}); allowed: {kind}") from error
 
 

@@ -70,14 +70,18 @@ class Certificate:
     loads : tuple of float
         The loads, or the ends of the range [N].
     method : str
-        ``sturm`` or ``bernstein``.
+        ``sturm`` or ``bernstein``; with contact memory ``balls``, over a range of loads ``balls, rectangle``.
     counterexample : tuple of float or None
         (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
         could not be decided.
     reason : str
         One sentence.
     boxes : int
-        Rectangles examined (``bernstein``).
+        Rectangles examined (``bernstein``), or boxes of frequency, speed and load (``balls``).
+    verdict : str or None
+        ``proved``, ``refuted`` or ``undecided``.
+    frequency : float or None
+        Of the root at the counterexample, or where it could not be decided [rad/s].
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
@@ -90,6 +94,13 @@ class Certificate:
     counterexample: tuple[float, float] | None
     reason: str
     boxes: int = 0
+    verdict: Literal["proved", "refuted", "undecided"] | None = None
+    frequency: float | None = None
+
+    @property
+    def over_a_range(self) -> bool:
+        """Whether `loads` are the ends of a range."""
+        return self.method in ("bernstein", "balls, rectangle")
 
 
 @dataclass(frozen=True)

@@ -29,9 +29,6 @@ NEAR = 20
 CHECKED = 24
 """Points along an axis at which explicit curves are held against eigenvalues."""
 
-BATCH = 2_000_000
-"""Comparisons of points with segments that are in memory at once."""
-
 
 @dataclass(frozen=True)
 class Curve:
@@ -128,20 +125,21 @@ class StabilityChart:
         shown = self.families[family]
         low, span = np.array([self.x.low, self.y.low]), np.array([self.x.high - self.x.low, self.y.high - self.y.low])
         u, v = (np.stack([np.ravel(x), np.ravel(y)]) - low[:, None]) / span[:, None]
-        crossings = np.zeros(u.size, int)
+        crossings, order = np.zeros(u.size, int), np.argsort(u)
         for curve in shown.curves:
             p = (curve.points - low) / span
             if not curve.closed:
                 ends = p[[0, -1]]
                 crossings += (ends[ends[:, 1] == 0][:, 0][:, None] < u).sum(axis=0)
             a, b = p[:-1], p[1:]
-            step = max(BATCH // max(len(a), 1), 1)
-            for i in range(0, u.size, step):
-                here = slice(i, i + step)
-                spans = (a[:, 0][:, None] < u[here]) != (b[:, 0][:, None] < u[here])
-                run = np.where(b[:, 0] == a[:, 0], 1.0, b[:, 0] - a[:, 0])[:, None]
-                height = a[:, 1][:, None] + (b - a)[:, 1][:, None] * (u[here] - a[:, 0][:, None]) / run
-                crossings[here] += (spans & (height < v[here])).sum(axis=0)
+            first, last = (
+                np.searchsorted(u[order], end, side="right") for end in (np.minimum(a, b)[:, 0], np.maximum(a, b)[:, 0])
+            )
+            segment = np.repeat(np.arange(len(a)), last - first)  # each with the points in its range of x
+            at = order[np.arange(segment.size) - np.repeat(np.cumsum(last - first) - last, last - first)]
+            a, b = a[segment], b[segment]
+            height = a[:, 1] + (b - a)[:, 1] * (u[at] - a[:, 0]) / (b - a)[:, 0]
+            crossings += np.bincount(at[height < v[at]], minlength=u.size)
         return (shown.origin_stable ^ (crossings % 2 == 1)).reshape(np.shape(x))
 
 

@@ -2,8 +2,9 @@
 
 Stiffness and damping of a joint enter the state matrix through one vector of forces b: A(u, v) = A_0 + b (u p + v q)'. With
 the receptances g_p = p'(s - A_0)^-1 b and g_q the characteristic equation is u g_p(s) + v g_q(s) = 1; for stiffness and damping
-about one axis this is k + s c = -1/G(s). At s = -margin + i w it is two linear equations for u and v, at s = -margin one: a
-straight line. Of these curves (the D-decomposition of Neimark) the boundary is what has no eigenvalue further to the right.
+about one axis this is k + s c = -1/G(s). With a delay A_0 hangs on s, and all else stays. At s = -margin + i w it is two linear
+equations for u and v, at s = -margin one: a straight line. Of these curves (the D-decomposition of Neimark) the boundary is
+what has no eigenvalue further to the right.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import matrix_balance
 
+from ..stability.delay import DelayGear, Frozen
 from ..stability.linear import linear_gear
 from ..study.study import Study
 from .plane import Plane
@@ -65,6 +67,19 @@ class Joint:
         return np.nan_to_num(places, nan=1e9, posinf=1e9, neginf=-1e9)
 
 
+@dataclass(frozen=True)
+class DelayJoint(Joint):
+    """A joint of a gear whose tyre has a delay: A_0 hangs on s too, as `frozen`, at one place, says."""
+
+    frozen: Frozen
+
+    def receptances(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """g_p, g_q (m,) at s (m,)."""
+        A, _ = self.frozen.at(s[None].astype(complex))
+        x = np.linalg.solve(s[:, None, None] * np.eye(len(self.b)) - A[0], self.b[:, None].astype(complex))[:, :, 0]
+        return x @ self.p, x @ self.q
+
+
 def joint_of(plane: Plane) -> Joint | None:
     """The joint at which both quantities of a plane act, or None if they do not.
 
@@ -77,8 +92,9 @@ def joint_of(plane: Plane) -> Joint | None:
     Joint or None
     """
     u, v = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.37, 0.61]]).T
-    A = plane.matrices(u, v)
-    if not np.isfinite(A).all():
+    frozen = plane.frozen(u, v) if plane.delayed else None
+    A = plane.matrices(u, v) if frozen is None else frozen.A_0
+    if not np.isfinite(A).all() or (frozen is not None and not frozen.alike()):
         return None
     P, Q = A[1] - A[0], A[2] - A[0]
     expected = A[0] + u[:, None, None] * P + v[:, None, None] * Q
@@ -86,7 +102,8 @@ def joint_of(plane: Plane) -> Joint | None:
     n, largest = len(P), np.abs(A).max()
     if np.abs(A - expected).max() > AFFINE * largest or sizes[1] > AFFINE * sizes[0] or sizes[0] == 0:
         return None
-    return Joint(A[0], sizes[0] * forces[:, 0], directions[0, :n], directions[0, n:])
+    parts = A[0], sizes[0] * forces[:, 0], directions[0, :n], directions[0, n:]
+    return Joint(*parts) if frozen is None else DelayJoint(*parts, frozen.taken(np.arange(1)))
 
 
 def boundary(plane: Plane, joint: Joint, tolerance: float) -> list[Polyline] | None:
@@ -201,7 +218,7 @@ def _rightmost(plane: Plane, places: np.ndarray, w: np.ndarray) -> np.ndarray:
     if not len(places):
         return np.zeros(0, bool)
     plane.tally.add(len(places))
-    roots = np.linalg.eigvals(plane.matrices(*places.T)).astype(complex)
+    roots = plane.roots(*places.T).astype(complex)
     rows = np.arange(len(roots))
     roots[rows, np.abs(roots - (-plane.margin + 1j * w)[:, None]).argmin(axis=1)] = -np.inf
     pairs = rows[w > 0]
@@ -284,10 +301,10 @@ def _joined(pieces: list[_Piece], tolerance: float) -> list[Polyline] | None:
 def joint_boundary(
     study: Study, speed: float, load: float, frequencies: np.ndarray, margin: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping about the yaw axis at which the gear has the eigenvalue -margin + i w: an explicit curve.
+    """Stiffness and damping where the damper acts, at which the gear has the eigenvalue -margin + i w: an explicit curve.
 
-    With G(s) the receptance of the gear without damper at the strut, yaw angle over yaw torque, the characteristic equation
-    with k + s c at this joint is k + s c = -1/G(s), for any number of states.
+    With G(s) the receptance of the gear without damper there (for most gears yaw angle over yaw torque), the characteristic
+    equation with k + s c at this joint is k + s c = -1/G(s), for any number of states.
 
     Parameters
     ----------
@@ -305,10 +322,21 @@ def joint_boundary(
     tuple of ndarray
         (m,) torsional stiffness [N m/rad] and damping [N m s/rad].
     """
-    free = {"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}
-    gear = linear_gear(study.replace(damper=free))
-    A = gear.matrices(speed, load)[0]
-    yaw_angle, yaw_rate = np.eye(len(A))[[gear.state_names.index(name) for name in ("yaw_angle", "yaw_rate")]]
-    joint = Joint(A, -yaw_rate / study.gear.yaw_inertia, yaw_angle, yaw_rate)
+
+    def gear_with(stiffness: float, damping: float) -> tuple[np.ndarray, Frozen | None]:
+        free = {"topology": "rotational", "torsional_stiffness": stiffness, "torsional_damping": damping}
+        gear = linear_gear(study.replace(damper=free))
+        if isinstance(gear, DelayGear):
+            frozen = gear.frozen(np.array([speed]), np.array([load]))
+            return np.asarray(frozen.A_0[0]), frozen
+        return np.asarray(gear.matrices(speed, load)[0]), None
+
+    (A, frozen), inertia = gear_with(0.0, 0.0), study.gear.yaw_inertia
+    # in units of the matrix' own entries, so that no digits are lost
+    units = inertia * np.abs(A).max(), inertia * np.abs(A).max() ** 0.5
+    change = np.hstack([(gear_with(units[0], 0.0)[0] - A) / units[0], (gear_with(0.0, units[1])[0] - A) / units[1]])
+    forces, sizes, directions = np.linalg.svd(change)
+    parts = A, sizes[0] * forces[:, 0], directions[0, : len(A)], directions[0, len(A) :]
+    joint = Joint(*parts) if frozen is None else DelayJoint(*parts, frozen)
     k_psi, c_psi = joint.at(margin, 2 * np.pi * np.asarray(frequencies, float)).T
     return k_psi, c_psi

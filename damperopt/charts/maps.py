@@ -8,6 +8,8 @@ their graph is written out as a loop that numba compiles: what depends on the ro
 *Abscissa*: Newton's method on the polynomial from the rightmost root of the neighbouring pixel; then Lienard-Chipart for the
 polynomial shifted by that abscissa and a little more checks that no root lies to the right. Where one does, or Newton's method
 does not converge, all roots are found by Weierstrass' iteration. Every value is so checked, or made from all roots.
+
+With a tyre that has a delay there is no polynomial: fewer pixels, each with its exact eigenvalues.
 """
 
 from __future__ import annotations
@@ -33,10 +35,15 @@ _BINARY |= {
     ca.OP_ATAN2: "math.atan2({}, {})",
     ca.OP_HYPOT: "math.hypot({}, {})",
 }
-_BINARY |= {ca.OP_FMAX: "max({}, {})", ca.OP_FMIN: "min({}, {})", ca.OP_LT: "float({} < {})", ca.OP_LE: "float({} <= {})"}
 _BINARY |= {
-    ca.OP_EQ: "float({} == {})",
-    ca.OP_NE: "float({} != {})",
+    ca.OP_FMAX: "max({}, {})",
+    ca.OP_FMIN: "min({}, {})",
+    ca.OP_LT: "(1.0 if {} < {} else 0.0)",
+    ca.OP_LE: "(1.0 if {} <= {} else 0.0)",
+}
+_BINARY |= {
+    ca.OP_EQ: "(1.0 if {} == {} else 0.0)",
+    ca.OP_NE: "(1.0 if {} != {} else 0.0)",
     ca.OP_AND: "{} * {}",
     ca.OP_IF_ELSE_ZERO: "({1} if {0} != 0 else 0.0)",
 }
@@ -48,6 +55,10 @@ _UNARY |= {
 }
 
 TINY = 1e-300
+
+DELAY_PIXELS = 160
+"""Along each axis where eigenvalues are those of a gear with a delay."""
+
 CLOSE = 1e-8
 """Relative to the root: how far to the right of a value no root is certain to lie."""
 
@@ -134,10 +145,24 @@ def filled_map(plane: Plane, quantity: Literal["abscissa", "damping"] = "absciss
     -------
     FilledMap
     """
+    if plane.delayed:
+        return _of_delay(plane, quantity, min(pixels, DELAY_PIXELS))
     x, y = (axis.at((np.arange(pixels) + 0.5) / pixels) for axis in (plane.x, plane.y))
     kernels = StabilityMap(plane)
     values = kernels.abscissa(x, y) if quantity == "abscissa" else kernels.damping_ratio(x, y)
     return FilledMap(quantity, x, y, values)
+
+
+def _of_delay(plane: Plane, quantity: Literal["abscissa", "damping"], pixels: int) -> FilledMap:
+    """From exact eigenvalues of a gear whose tyre has a delay, at every pixel."""
+    fractions = (np.arange(pixels) + 0.5) / pixels
+    u, v = np.meshgrid(fractions, fractions)
+    if quantity == "abscissa":
+        values = plane.excess(u, v) - plane.margin
+    else:
+        roots = plane.roots(u.ravel(), v.ravel())
+        values = (-roots.real / np.maximum(np.abs(roots), TINY)).min(axis=1).reshape(u.shape)
+    return FilledMap(quantity, plane.x.at(fractions), plane.y.at(fractions), values)
 
 
 class StabilityMap:

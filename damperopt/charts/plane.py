@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 
 from ..errors import ConfigError
-from ..stability.linear import LinearModel, spectral_abscissa
+from ..stability.delay import Frozen, frozen_of, rightmost
+from ..stability.linear import LinearModel
 from ..study.components import unit_of_name
 from ..study.study import Study, unit_of
 from ..symbols import data_names, data_values
@@ -22,6 +23,9 @@ OPERATING = {"speed": "m/s", "vertical_load": "N"}
 
 BATCH = 20_000
 """Matrices that are in memory at once."""
+
+SHOWN = 6
+"""Rightmost eigenvalues that are looked at where there are infinitely many."""
 
 
 def quantity_name(study: Study, text: str) -> str:
@@ -98,6 +102,8 @@ class Axis:
         lowest = 0.0 if full in (*OPERATING, *study.variable_names) else -np.inf
         if low < lowest or (full == "speed" and low == 0):
             raise ConfigError(f"{name}: found {low:g} {unit}; allowed: {'> 0' if full == 'speed' else '>= 0'}")
+        if full == "vertical_load" and (words := next(filter(None, map(study.beyond_tyre, (low, high))), "")):
+            raise ConfigError(f"{name}: the range {low:g} to {high:g} N {words}; allowed: loads that the tyre has data for")
         if lowest == -np.inf:
             for end in (low, high):
                 study.replace(**{full.replace(".", "__"): float(end)})  # what a study may not have, a chart may not show
@@ -155,6 +161,8 @@ class Plane:
     def __post_init__(self) -> None:
         if self.x.name == self.y.name:
             raise ConfigError(f"{self.x.name}: found on both axes; allowed: two different quantities")
+        if "vertical_load" not in (self.x.name, self.y.name) and (words := self.study.beyond_tyre(self.load)):
+            raise ConfigError(f"load: {self.load:g} N {words}; allowed: loads that the tyre has data for")
 
     @property
     def evaluations(self) -> int:
@@ -177,14 +185,35 @@ class Plane:
 
     def matrices(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """State matrices (m, n, n) at fractions u, v (m,) of the ranges."""
-        names, n, m = self._model.design_names, len(self._model.state_names), u.size
-        varied = {self.x.name: self.x.at(u), self.y.name: self.y.at(v)}
-
-        def rows(keys: tuple[str, ...]) -> ca.DM:
-            return ca.DM(np.array([np.broadcast_to(varied.get(key, self._values[key]), m) for key in keys]).reshape(-1, m))
-
-        inputs = [rows(keys) for keys in (names, ("speed",), ("vertical_load",), self._data_names)]
+        n, m = len(self._model.state_names), u.size
+        inputs = [ca.DM(rows) for rows in self._rows(u, v)]
         return self._model.state_matrix(*inputs).full().reshape(n, m, n).transpose(1, 0, 2)
+
+    def _rows(self, u: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
+        """Design, speed, load and numbers of the study, (k, m) each."""
+        varied, m = {self.x.name: self.x.at(u), self.y.name: self.y.at(v)}, u.size
+
+        def rows(keys: tuple[str, ...]) -> np.ndarray:
+            return np.array([np.broadcast_to(varied.get(key, self._values[key]), m) for key in keys]).reshape(-1, m)
+
+        return [rows(keys) for keys in (self._model.design_names, ("speed",), ("vertical_load",), self._data_names)]
+
+    @property
+    def delayed(self) -> bool:
+        """Whether the tyre has a delay: then `matrices` have its contact line as a field, and `roots` are exact."""
+        return self._model.structure is not None
+
+    def frozen(self, u: np.ndarray, v: np.ndarray) -> Frozen:
+        """The gear with a delay at fractions u, v (m,) of the ranges."""
+        assert self._model.structure is not None
+        design, speeds, loads, data = self._rows(u, v)
+        return frozen_of(self._model.structure, design, speeds[0], loads[0], data)
+
+    def roots(self, u: np.ndarray, v: np.ndarray, count: int | None = None) -> np.ndarray:
+        """Eigenvalues (m, k) [1/s] at fractions u, v (m,) of the ranges; with a delay the `count` rightmost ones."""
+        if self.delayed:
+            return rightmost(self.frozen(u, v), SHOWN if count is None else count)
+        return np.linalg.eigvals(self._existing(self.matrices(u, v)))
 
     def symbolic_matrix(self, x: ca.SX, y: ca.SX) -> ca.SX:
         """State matrix as an expression of the two quantities [SI]; all else is folded into constants."""
@@ -200,20 +229,21 @@ class Plane:
         """Spectral abscissa plus margin [1/s]: negative where the margin is kept."""
         u, v = np.broadcast_arrays(u, v)
         self.tally.add(u.size)
-        parts = [self.matrices(u.ravel()[i : i + BATCH], v.ravel()[i : i + BATCH]) for i in range(0, u.size, BATCH)]
-        values = [self._abscissa(A) for A in parts]
+        starts = range(0, u.size, BATCH)
+        parts = (self.roots(u.ravel()[i : i + BATCH], v.ravel()[i : i + BATCH], 1) for i in starts)
+        values = [roots.real.max(axis=1) for roots in parts]
         return (np.concatenate(values) if values else np.zeros(0)).reshape(u.shape) + self.margin
 
     def rightmost(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Rightmost eigenvalue, that with a positive imaginary part of a pair [1/s]."""
-        roots = np.linalg.eigvals(self.matrices(u, v))
+        roots = self.roots(u, v)
         order = np.argmax(roots.real + 1e-12 * np.abs(roots.imag), axis=1)
         found = roots[np.arange(len(roots)), order]
         return found.real + 1j * np.abs(found.imag)
 
-    def _abscissa(self, A: np.ndarray) -> np.ndarray:
+    def _existing(self, A: np.ndarray) -> np.ndarray:
         if not np.isfinite(A).all():
             raise ConfigError(
                 f"{self.x.name}, {self.y.name}: the model does not exist in all of the range; allowed: a smaller one"
             )
-        return spectral_abscissa(A)
+        return A

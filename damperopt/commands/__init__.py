@@ -9,5 +9,19 @@ from .simulate import simulate
 from .studies import init, schema, validate
 from .sweep import sweep
 from .thesis import thesis
+from .tyre import tyre
 
-__all__ = ["analyse", "chart", "components", "init", "optimise", "report", "schema", "simulate", "sweep", "thesis", "validate"]
+__all__ = [
+    "analyse",
+    "chart",
+    "components",
+    "init",
+    "optimise",
+    "report",
+    "schema",
+    "simulate",
+    "sweep",
+    "thesis",
+    "tyre",
+    "validate",
+]

@@ -62,6 +62,11 @@ def optimise(
 
     def write(place: Path) -> None:
         shutil.copyfile(file, place / "config.yaml")
+        for named in config.files_of(file):
+            copy = place / named
+            if place.resolve() in copy.resolve().parents:  # and not one that is named from above or by its whole path
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(file.parent / named, copy)
         if len(studies) == 1:
             write_design(place, studies[0], ordered[0], figures)
             if figures:

@@ -101,7 +101,7 @@ class _Lines:
     """Progress where no terminal shows a bar: a line every few seconds, none for short work."""
 
     def __init__(self) -> None:
-        self._words, self._done = "", 0.0
+        self._words, self._said, self._done = "", "", 0.0
         self._total: float | None = None
         self._ended, self._clock = threading.Event(), time.monotonic()
         self._thread = threading.Thread(target=self._print, daemon=True)
@@ -126,14 +126,23 @@ class _Lines:
 
     def _print(self) -> None:
         while not self._ended.wait(SECONDS_A_LINE):
-            of = "" if self._total is None else f" of {self._total:g}"
-            words = f"{self._words}: {self._done:g}{of}, {time.monotonic() - self._clock:.0f} s"
-            with suppress(OSError):  # nobody reads it
-                err.print(words, markup=False, soft_wrap=True)
+            self._say()
+
+    def _say(self) -> None:
+        self._said = self._state
+        with suppress(OSError):  # nobody reads it
+            err.print(f"{self._said}, {time.monotonic() - self._clock:.0f} s", markup=False, soft_wrap=True)
+
+    @property
+    def _state(self) -> str:
+        return f"{self._words}: {self._done:g}" + ("" if self._total is None else f" of {self._total:g}")
 
     def end(self) -> None:
+        """The last line that was shown is brought up to date; short work stays without one."""
         self._ended.set()
         self._thread.join()
+        if self._said not in ("", self._state):
+            self._say()
 
 
 @contextmanager

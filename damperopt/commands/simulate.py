@@ -97,6 +97,6 @@ def _enough(gear: LinearGear, speed: float, load: float) -> float:
     """Seconds that show what a motion does: `CYCLES` of the slowest mode that oscillates, at most `LONGEST`."""
     import numpy as np
 
-    rates = np.abs(np.linalg.eigvals(gear.matrices(speed, load)[0]).imag)
+    rates = np.abs(np.linalg.eigvals(gear.visible(speed, load)[0]).imag)
     slowest = rates[rates > 1e-6 * max(float(rates.max()), 1.0)].min(initial=np.inf)
     return float(min(2 * np.pi * CYCLES / slowest, LONGEST)) if np.isfinite(slowest) else LONGEST

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -15,15 +16,27 @@ from ..literature.arreaza2015 import Row
 from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
 from ..quantities.record import quantity_of
+from ..quantities.shown import rounded, scale, unit_text
 from ..results import Certificate, DesignResult, OperatingPoint
 from ..stability.critical import CriticalSpeed
-from ..stability.wavelength import ENOUGH, Wavelength
+from ..stability.wavelength import Wavelength
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
+from ..tyres.curves import TyreCurves
+from ..tyres.property_file import PropertyFile
 
-__all__ = ["disturbance_words", "show_analysis", "show_chart", "show_claims", "show_design", "show_motion", "show_ranking"]
+__all__ = [
+    "disturbance_words",
+    "show_analysis",
+    "show_chart",
+    "show_claims",
+    "show_design",
+    "show_motion",
+    "show_ranking",
+    "show_tyre",
+]
 
 SHOWN_PEAKS = (
     "yaw_angle",
@@ -61,7 +74,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     console.print(table)
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
-    loads = f"{' to ' if certificate.method == 'bernstein' else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
+    loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
     console.print(
         f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
         f"{certificate.speed[1]:g} m/s, {loads} kN",
@@ -192,26 +205,26 @@ def show_analysis(
             else f"No critical speed between {low:g} and {high:g} m/s."
         )
     console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
         console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
-    console.print(escape(" ".join(covers(study))), soft_wrap=True)
     console.print("Not checked: " + escape("; ".join(leaves_out(study))), soft_wrap=True, style="dim")
     if wave is not None:
-        _show_wavelength(console, wave)
+        _show_wavelength(console, wave, study.tyre.contact.least_wave())
 
 
-def _show_wavelength(console: Console, wave: Wavelength) -> None:
+def _show_wavelength(console: Console, wave: Wavelength, least: float) -> None:
     console.print(
         f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.2g} contact lengths, at {wave.speed:g} m/s",
         soft_wrap=True,
     )
-    if wave.contact_lengths < ENOUGH:
+    if wave.contact_lengths < least:
         console.print(
-            f"[yellow]Below {ENOUGH:g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
+            f"[yellow]Below {least:.3g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
             "the verdict holds for this tyre law, and may not for the tyre.",
             soft_wrap=True,
         )
@@ -285,3 +298,37 @@ def show_claims(console: Console, rows: Sequence[Row]) -> None:
     for form in forms:
         agreed = [row.verdict.agrees for row in rows if row.form == form]
         console.print(f"{form}: {sum(agreed)} of {len(agreed)} agree")
+
+
+TYRE_LOADS = 4
+"""Columns of the table of a tyre; the file has more."""
+
+
+def show_tyre(console: Console, record: TyreCurves, tyre: Any, read: PropertyFile | None) -> None:
+    """A tyre over load, what it comes from, and what of a property file was used."""
+    console.print(f"\n[bold]{escape(record.name)}[/]", soft_wrap=True)
+    for words in (tyre.origin(), *(() if read is None else _about_file(read))):
+        if words:
+            console.print(escape(words), soft_wrap=True)
+    shown = np.unique(np.linspace(0, len(record.loads) - 1, TYRE_LOADS).round().astype(int))
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    table.add_column("load of a wheel", no_wrap=True)
+    for i in shown:
+        table.add_column(f"{record.loads[i] / 1e3:.4g} kN", justify="right")
+    table.add_column("unit")
+    for name, column in record.table.items():
+        factor, unit = scale(column.unit)[1], unit_text(scale(column.unit)[0])
+        cells = [rounded(v * factor) if math.isfinite(v) else "-" for v in column.values[shown]]
+        table.add_row(name.replace("_", " "), *cells, unit)
+    console.print(table)
+
+
+def _about_file(read: PropertyFile) -> list[str]:
+    """What of a property file is used, and what is not."""
+    lists = (
+        ("used", read.used),
+        ("not in the file, taken as 0", read.absent),
+        ("not needed for pure lateral slip without camber", read.aside),
+        ("unknown", read.unknown),
+    )
+    return [read.kind, *(f"{words}: {', '.join(keys)}" for words, keys in lists if keys), *read.notes]

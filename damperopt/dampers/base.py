@@ -13,7 +13,11 @@ from ..ports.sizing import Force, LimitEvent, Sized
 from ..quantities.named import DesignVariable, Output, State
 from ..quantities.record import Record
 
-__all__ = ["Context", "Damper"]
+__all__ = ["FORGOTTEN", "Context", "Damper"]
+
+
+FORGOTTEN = 1e3
+"""Rate [1/s] at which a linear model of hysteresis forgets the force of an earlier slide, which would be a root at 0."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +134,23 @@ class Damper(Record):
         if self.STATES:
             return None
         return slope(lambda rate: self.force(design, {}, 0.0, rate, Context(), Linear()).force, 0.0)
+
+    def equivalent(
+        self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context
+    ) -> tuple[Expr, Expr] | None:
+        """Stiffness [N/m] and damping [N s/m] that have the first harmonic of the force along a sinusoidal stroke.
+
+        None where no formula says it. Exact for a linear damper; of a nonlinear one the describing function.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        amplitude, frequency : Expr
+            Of the stroke [m], or [rad] for a rotary damper; omega [rad/s].
+        context : Context
+        """
+        return None
 
     def peak_force(self, design: Mapping[str, Expr], rate: Expr) -> Expr:
         """Force at the largest rate of the limit event [N], as the linear model has it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal
@@ -23,6 +24,7 @@ from ..strength.cylinder import (
     rod_stiffness,
 )
 from .base import Context, Damper
+from .oil import Oil, damping_factor
 
 __all__ = ["Hydraulic", "Orifice"]
 
@@ -50,6 +52,8 @@ class Hydraulic(Damper):
     kind: Literal["hydraulic"] = "hydraulic"
     orifice: Orifice | None = None
     """Quadratic part of the force."""
+    oil: Oil | None = None
+    """Its temperature; left out: that at which the damping is given."""
     series_stiffness: SeriesStiffness | None = None
     """Of oil column, rod and brackets, in series with the damper [N/m]."""
 
@@ -63,7 +67,7 @@ class Hydraulic(Damper):
         corners: Corners,
     ) -> Force:
         """F = c_lambda v + c_2 v |v|."""
-        c, v, orifice = design["c_lambda"], rate, self.orifice
+        c, v, orifice = design["c_lambda"] * damping_factor(self.oil, context.temperature), rate, self.orifice
         if orifice is None:
             return Force(c * v)
         return Force(c * v + orifice.coefficient * v * corners.magnitude(v, orifice.smoothing))
@@ -78,11 +82,17 @@ class Hydraulic(Damper):
         corners: Corners,
     ) -> Expr:
         """The positive root of c_2 v^2 + c v = |F|, in the form that also holds for c_2 = 0."""
-        c, F, orifice = design["c_lambda"], force, self.orifice
+        c, F, orifice = design["c_lambda"] * damping_factor(self.oil, context.temperature), force, self.orifice
         if orifice is None:
             return F / c
         magnitude = corners.magnitude(F, c * orifice.smoothing)
         return 2 * F / (c + sqrt(c**2 + 4 * orifice.coefficient * magnitude))
+
+    def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
+        """c_lambda + 8/(3 pi) c_2 omega X of the damper alone, without what stands in series with it."""
+        c_2 = 0.0 if self.orifice is None else self.orifice.coefficient
+        c = design["c_lambda"] * damping_factor(self.oil, context.temperature)
+        return 0.0, c + 8 / (3 * math.pi) * c_2 * frequency * amplitude
 
     def series(self, design: Mapping[str, Expr]) -> Expr | None:
         """The key `series_stiffness`."""
@@ -121,7 +131,10 @@ class Hydraulic(Damper):
         return Sized({"damper": cylinder_mass(event, model, diameter, area)}, (rod,), length)
 
     def leaves_out(self) -> tuple[str, ...]:
-        """The oil column, where it has no stiffness."""
+        """The oil column and its temperature, where they are not given."""
+        words = []
         if self.series_stiffness is None and not self.is_sized("damper"):
-            return ("compliance of oil column, rod and brackets in series with the damper (damper.compliance)",)
-        return ()
+            words.append("compliance of oil column, rod and brackets in series with the damper (damper.compliance)")
+        if self.oil is None:
+            words.append("oil that is cold or hot (damper.oil)")
+        return tuple(words)

@@ -34,3 +34,7 @@ class Torsional(Damper):
     ) -> Force:
         """T = c_psi psi' [N m]."""
         return Force(self.torsional_damping * rate)
+
+    def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
+        """c_psi."""
+        return 0.0, self.torsional_damping

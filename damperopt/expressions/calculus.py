@@ -6,6 +6,7 @@ array, an interval and a graph. This module alone asks for CasADi, and only when
 
 from __future__ import annotations
 
+import cmath
 import math
 import sys
 from collections.abc import Callable, Sequence
@@ -24,6 +25,7 @@ __all__ = [
     "is_symbol",
     "log",
     "partial",
+    "piecewise",
     "sin",
     "slope",
     "sqrt",
@@ -34,12 +36,14 @@ __all__ = [
 ]
 
 Expr: TypeAlias = Any
-"""A float, an array, a ball or a symbol."""
+"""A float, a complex number, an array, a ball or a symbol."""
 
 
 def _applied(name: str, x: Expr) -> Expr:
     if isinstance(x, (int, float)):
         return getattr(math, name)(x)
+    if isinstance(x, complex):
+        return getattr(cmath, name)(x)
     if isinstance(x, (np.ndarray, np.generic)):
         return getattr(np, {"atan": "arctan"}.get(name, name))(x)
     method = getattr(x, name, None) or getattr(x, {"atan": "arctan"}[name])
@@ -93,6 +97,42 @@ def where(condition: Expr, yes: Expr, no: Expr) -> Expr:
     if isinstance(condition, np.ndarray):
         return np.where(condition, yes, no)
     return yes if condition else no
+
+
+def piecewise(x: Expr, limits: Sequence[float], pieces: Sequence[Callable[[Expr], Expr]]) -> Expr:
+    """A continuous function that is written piece by piece.
+
+    It is summed up along x, each piece over its own part: without a choice, so that balls over a limit stay tight.
+
+    Parameters
+    ----------
+    x : Expr
+    limits : sequence of float
+        (n,) ascending; from each on the next piece holds, and there both must have one value.
+    pieces : sequence of callable
+        (n + 1,) of x.
+
+    Examples
+    --------
+    >>> [piecewise(x, [1.0, 2.0], [lambda x: 0.0, lambda x: x - 1, lambda x: 1.0]) for x in (0.5, 1.25, 3.0)]
+    [0.0, 0.25, 1.0]
+    """
+    value = pieces[0](_smaller(x, limits[0]) if limits else x)
+    for k, piece in enumerate(pieces[1:], 1):
+        inside = -_smaller(-x, -limits[k - 1])
+        if k < len(limits):
+            inside = _smaller(inside, limits[k])
+        value = value + (piece(inside) - piece(limits[k - 1]))
+    return value
+
+
+def _smaller(x: Expr, limit: float) -> Expr:
+    """The smaller of two."""
+    if is_symbol(x):
+        return import_module("casadi").fmin(x, limit)
+    if isinstance(x, (np.ndarray, np.generic)):
+        return np.minimum(x, limit)
+    return min(x, limit) if isinstance(x, (int, float)) else x.min(type(x)(limit))
 
 
 def is_symbol(x: Expr) -> bool:

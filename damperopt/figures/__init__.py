@@ -18,6 +18,8 @@ _HOME = {
     "sweep_figure": "sweep",
     "tornado": "design",
     "trajectory": "motion",
+    "tyre_over_load": "tyre",
+    "tyre_over_slip": "tyre",
 }
 """Module of each public function; that of a chart is `chart.chart`, that of a linkage `linkage.linkage`."""
 

@@ -10,6 +10,8 @@ from typing import Any
 
 import matplotlib
 import matplotlib.pyplot as plt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from ..study.components import design_variables
 
@@ -33,6 +35,7 @@ STYLE: Any = {
 BLOCKS = ("gear", "tyre", "damper", "material", "requirements", "mass", "envelope")
 """Blocks of a study that say nothing of what their keys are."""
 
+PNG_DPI = 150
 LONGEST = 60
 """Characters of a name in a figure."""
 
@@ -85,9 +88,13 @@ def quantity_words(name: str) -> str:
 def save(figure: Any, folder: Path, name: str) -> list[Path]:
     """Write a figure as PNG and SVG and close it; returns both paths."""
     paths = [folder / f"{name}.png", folder / f"{name}.svg"]
+    usual = figure.dpi
     try:
-        figure.savefig(paths[0], dpi=150)
-        figure.savefig(paths[1], metadata={"Date": None})
+        figure.dpi = PNG_DPI  # the layout is found once and each file drawn once; `savefig` does both for each, twice
+        FigureCanvasAgg(figure).print_png(paths[0])
+        figure.dpi = usual
+        figure.set_layout_engine("none")
+        FigureCanvasSVG(figure).print_svg(paths[1], metadata={"Date": None})
     except Exception:
         for path in paths:
             path.unlink(missing_ok=True)  # half of a figure is none

@@ -91,7 +91,11 @@ class Gear(Record):
     @property
     def order(self) -> int:
         """Of the linear gear with a string tyre of one state, as the field counts it."""
-        return len(self.STATES) + 1
+        return len(self.states()) + 1
+
+    def states(self) -> tuple[State, ...]:
+        """States of the gear; one whose numbers say how many it has says it here."""
+        return self.STATES
 
     def attachments(self, x: Names) -> dict[str, Attachment]:
         """Where linkages act: ``damper`` between piston and strut."""

@@ -13,7 +13,30 @@ from .base import Gear, Names
 from .yaw import PolarInertia
 from .yaw_bending import YawBending
 
-__all__ = ["SpinningWheel"]
+__all__ = ["SpinningWheel", "gyroscopic"]
+
+
+def gyroscopic(motion: Motion, x: Names, momentum: Expr, yaw_inertia: Expr, bending_inertia: Expr) -> Motion:
+    """I_z psi'' = ... + h delta', I_x delta'' = ... - h psi': what spinning wheels add to a gear that yaws and bends.
+
+    Parameters
+    ----------
+    motion : Motion
+        Without them.
+    x : mapping of str to Expr
+        States by name.
+    momentum : Expr
+        h, angular momentum of all wheels about their axle [kg m^2/s].
+    yaw_inertia, bending_inertia : Expr
+        I_z, I_x [kg m^2].
+    """
+    yaw, bending = momentum * x["bending_rate"], -momentum * x["yaw_rate"]
+    rates = {
+        "yaw_rate": motion.rates["yaw_rate"] + yaw / yaw_inertia,
+        "bending_rate": motion.rates["bending_rate"] + bending / bending_inertia,
+    }
+    drive = motion.outputs["torque_without_friction"] + yaw
+    return Motion({**motion.rates, **rates}, {**motion.outputs, "torque_without_friction": drive})
 
 
 class SpinningWheel(YawBending):
@@ -27,18 +50,12 @@ class SpinningWheel(YawBending):
     """I_p of wheel, tyre and rotating brake about the axle [kg m^2]."""
 
     def rates(self, x: Names, contacts: Sequence[Contact], damper: Torque, yaw_torque: Expr, corners: Corners) -> Motion:
-        """I_z psi'' = ... + h delta', I_x delta'' = ... - h psi' with the angular momentum h = I_p V/R_w of the wheel."""
+        """With the angular momentum h = I_p V/R_w of the wheel."""
         motion = super().rates(x, contacts, damper, yaw_torque, corners)
         wheel = contacts[0].wheel
         assert wheel is not None
         h = self.wheel_polar_inertia * wheel.speed / self.wheel_radius
-        yaw, bending = h * x["bending_rate"], -h * x["yaw_rate"]
-        rates = {
-            "yaw_rate": motion.rates["yaw_rate"] + yaw / self.yaw_inertia,
-            "bending_rate": motion.rates["bending_rate"] + bending / self.lateral.inertia,
-        }
-        drive = motion.outputs["torque_without_friction"] + yaw
-        return Motion({**motion.rates, **rates}, {**motion.outputs, "torque_without_friction": drive})
+        return gyroscopic(motion, x, h, self.yaw_inertia, self.lateral.inertia)
 
     def leaves_out(self) -> tuple[str, ...]:
         """What every gear leaves out."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 from ..expressions.calculus import Expr, sin, sqrt
 from ..ports.linkage import Compliant, Linkage, Member, Point
 from ..quantities.named import DesignVariable
-from .base import TorqueLinks, from_lengths, reach_and_height
+from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .elastic import TAPERED_MASS, leg_length, tapered_stiffness, two_legs_stiffness
 from .spatial import closed_loop
 
@@ -43,7 +43,7 @@ class Arreaza(TorqueLinks):
         def apex(psi: Expr) -> Expr:
             return ell * sin(psi)
 
-        printed = 2 * E * I_arm / ell, design["c_lambda"] * ell**2
+        printed = 2 * E * I_arm / ell, viscous(design) * ell**2
         return from_lengths(3 * E * I_arm / ell**3, apex, apex, ell, ell, b), printed
 
     def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
+from ..errors import ConfigError
 from ..expressions.calculus import Expr, cos, sin, slope, sqrt, symbol, value_at
 from ..ports.linkage import Compliant, Linkage, Member, Point, Position
 from ..ports.sizing import LimitEvent
@@ -24,7 +25,7 @@ from ..quantities.record import Record
 from ..strength.members import member_mass
 from .elastic import TAPERED_MASS, LinkForm, SupportForm, leg_length, tapered_stiffness, two_legs_stiffness
 
-__all__ = ["Layout", "TorqueLinks", "from_lengths", "reach_and_height", "straight"]
+__all__ = ["Layout", "TorqueLinks", "from_lengths", "reach_and_height", "straight", "viscous"]
 
 
 class Layout(Record):
@@ -186,6 +187,8 @@ class TorqueLinks(Layout):
         """By the level of the geometry."""
         if self.geometry == "spatial":
             return self.spatial(design, youngs_modulus, stroke)
+        if self.geometry == "published" and "c_lambda" not in design:
+            raise ConfigError("damper.geometry: 'published' is of a viscous damper; allowed: planar, spatial for this kind")
         planar, (k_psi, c_psi) = self.planar(design, youngs_modulus, stroke)
         if self.geometry == "planar":
             return planar
@@ -209,6 +212,11 @@ def reach_and_height(design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Expr
         return L * sin(gamma), L * cos(gamma)
     height = L * cos(gamma) - stroke / 2
     return sqrt(L**2 - height**2), height
+
+
+def viscous(design: Mapping[str, Expr]) -> Expr:
+    """c_lambda of a viscous damper, for formulas as printed [N s/m]; 0 for kinds that have another number."""
+    return design.get("c_lambda", 0)
 
 
 def straight(stiffness: Expr, spring_lever: Expr, damper_lever: Expr, *lengths: Expr, **more: Any) -> Linkage:

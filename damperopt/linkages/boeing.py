@@ -10,7 +10,7 @@ from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
 from ..quantities.named import DesignVariable
 from ..strength.members import belleville_mass
-from .base import TorqueLinks, from_lengths, reach_and_height
+from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
 __all__ = ["Boeing"]
@@ -38,7 +38,7 @@ class Boeing(TorqueLinks):
         def gap(psi: Expr) -> Expr:
             return ell * sin(psi)
 
-        printed = design["k_lambda"] * ell**2, design["c_lambda"] * ell**2
+        printed = design["k_lambda"] * ell**2, viscous(design) * ell**2
         return from_lengths(design["k_lambda"], gap, gap, ell), printed
 
     def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:

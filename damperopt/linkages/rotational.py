@@ -24,5 +24,5 @@ class Rotational(Layout):
     """k_psi about the yaw axis [N m/rad]."""
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
-        """Levers of 1: strokes are angles, forces torques."""
-        return straight(self.torsional_stiffness, 1, 1, 0)
+        """Levers of 1, so that strokes are angles, and forces torques."""
+        return straight(self.torsional_stiffness, 1, 1, 1)

@@ -30,8 +30,9 @@ CHAIN_STATES = (
     State("dashpot_stroke", "m", "damper"),
     State("link_angle", "rad", "damper"),
     State("apex_deflection", "m", "damper"),
+    State("dashpot_angle", "rad", "damper"),
 )
-"""States that compliances add: one of these."""
+"""States that compliances add: one of these; the last is that of a rotary damper."""
 
 ROOT_STEPS = 5
 """Newton steps to where a held chain stands."""
@@ -113,10 +114,11 @@ class _Chain:
             dashpot, v = s, engaged * lever * self._attachment.rate
             F_d = self._force(s, v).force
         else:
-            dashpot = symbol("dashpot_stroke")
+            name = "dashpot_angle" if damper.ROTARY else "dashpot_stroke"
+            dashpot = symbol(name)
             F_d = k_s * (s - dashpot)
             v = self._speed(dashpot, F_d)
-            chain["dashpot_stroke"] = dashpot, v, _explicit_stroke(link, driving)
+            chain[name] = dashpot, v, _explicit_stroke(link, driving)
         torque = -engaged * (F_spring * position.spring_lever + (F_stop + F_d) * lever)
         shown = (s, v, F_d, position.deflection, F_spring, F_stop)
         return self._answer(torque, chain, dashpot, v, shown, (link.unknowns, link.rest, link.closure(driving)))

@@ -20,7 +20,7 @@ from typing import Any, ClassVar, Literal
 from ..expressions.calculus import Expr, sin, sqrt
 from ..ports.linkage import Compliant, Linkage, Member
 from ..strength.sections import area
-from .base import TorqueLinks, from_lengths, reach_and_height
+from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
 __all__ = ["Utas"]
@@ -39,7 +39,7 @@ class Utas(TorqueLinks):
     def planar(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> tuple[Linkage, tuple[Expr, Expr]]:
         """The arm's tip moves across it, the apex on the circle of radius ell; thesis (3-23) .. (3-30)."""
         # R length of arm and damper from the top, alpha the arm's angle at the apex
-        c_lambda, I_arm, b = design["c_lambda"], design["I_arm"], design["b"]
+        c_lambda, I_arm, b = viscous(design), design["I_arm"], design["b"]
         ell, _ = reach_and_height(design, stroke)
         R = sqrt(ell**2 + b**2)
         sin_alpha = ell / R

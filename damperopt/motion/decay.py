@@ -154,8 +154,8 @@ class DecayAnalysis:
         self, design: Mapping[str, float], speed: float, load: float, gradient: bool, data: np.ndarray
     ) -> DecayPoint:
         values = [design[name] for name in self._dae.design_names]
-        A = self.model.state_matrix(ca.DM(values), speed, load, data).full()
-        latest = latest_count(A, self.requirement.cycles, self._dae.state_names)
+        A = self._matrix(np.array(values), speed, load, data)
+        latest = latest_count(A, self.requirement.cycles, self._shown)
         motion, answer = self._followed(values, speed, load, A, latest, gradient, data)
         peaks, peak_slopes = self._peaks_of(motion, values, speed, load, gradient, data)
         if answer is None:
@@ -228,12 +228,21 @@ class DecayAnalysis:
                 slopes[k] = np.sign(row[top]) * weights @ np.array(rows) / peaks[k]
         return peaks, slopes
 
+    @property
+    def _shown(self) -> tuple[str, ...]:
+        """States that are not hidden: the others set no time scale."""
+        return tuple(state.name for state in self._dae.states if not state.hidden)
+
+    def _matrix(self, values: np.ndarray, speed: float, load: float, data: np.ndarray) -> np.ndarray:
+        """State matrix of the states shown."""
+        kept = [i for i, state in enumerate(self._dae.states) if not state.hidden]
+        return self.model.state_matrix(ca.DM(values), speed, load, data).full()[np.ix_(kept, kept)]
+
     def _latest_slopes(self, values: list[float], speed: float, load: float, data: np.ndarray) -> np.ndarray:
         """d `latest_count`/d ln(design variable) [s], by central differences."""
 
         def latest(factors: np.ndarray) -> float:
-            A = self.model.state_matrix(ca.DM(factors * values), speed, load, data).full()
-            return latest_count(A, self.requirement.cycles, self._dae.state_names)
+            return latest_count(self._matrix(factors * values, speed, load, data), self.requirement.cycles, self._shown)
 
         steps = DIFFERENCE * np.eye(len(values))
         return np.array([(latest(1 + h) - latest(1 - h)) / (2 * DIFFERENCE) for h in steps])

@@ -2,7 +2,7 @@
 
 Nothing is rounded off here, and no integrator is shared with `integrators`: SciPy's Runge-Kutta method of order 8 runs from
 one event to the next, the closed linkage is solved by Newton's method at every evaluation, and dry friction sticks until
-the torque exceeds it. It checks the smooth model, and designs made with it.
+what drives it exceeds it. It checks the smooth model, and designs made with it.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -17,7 +18,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..dynamics import build
-from ..expressions.corners import Switched
+from ..errors import ConfigError
+from ..expressions.corners import Switch, Switched
+from ..expressions.dae import DAE
 from ..stability.linear import LinearGear, LinearModel
 from ..study.disturbances import Disturbance
 from ..study.study import Study
@@ -39,6 +42,9 @@ RELAXING_STEPS = 4
 """Until the corners agree with where the relaxed chain stands: each step is Newton's on straight pieces."""
 
 NEWTON_STEPS = 50
+
+STILL = 1e-13
+"""Rate [rad/s] below which nothing rubs: what rounding leaves where the motion has stopped."""
 
 STEPS_PER_CYCLE = 40
 """Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
@@ -105,20 +111,19 @@ class ExactSimulator:
         self.study, self.model = study, LinearModel(study) if model is None else model
         corners = Switched()
         dae = build(symbolic(study), corners)
-        friction = corners.switches.pop("friction", None)
-        self.corners, self.friction_torque = len(corners.switches), study.gear.friction.torque if study.gear.friction else 0.0
+        dae, friction = _one_friction(dae, corners)
+        self.corners, self.sticks = len(corners.switches), friction is not None
         self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
         modes = [switch.mode for switch in corners.switches.values()]
         modes += [friction.mode] if friction else [ca.SX.sym("no friction")]
         step = ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ dae.alg if dae.z.numel() else dae.z
-        self.yaw_rate = dae.index("yaw_rate")
-        outputs = {"yaw_acceleration": dae.ode[self.yaw_rate], **dae.outputs}
+        outputs = {"yaw_acceleration": dae.ode[dae.index("yaw_rate")], **dae.outputs}
         self.unknowns, self.units = dae.z.numel(), dae.units
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
-        motion = [dae.ode, step, arguments, ca.SX(dae.outputs["torque_without_friction"])]
+        motion = [dae.ode, step, arguments, _grip(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, dae.data)
         self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
@@ -181,6 +186,35 @@ class ExactSimulator:
         return Trajectory(speed, load, time, states, named, status, message, "exact", forcing, self.units)
 
 
+FRICTIONS = ("friction", "damper friction")
+"""Corners at which the motion sticks: of the strut, and of a damper."""
+
+
+def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
+    """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
+    found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
+    found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
+    if len(found) == 2:
+        if not ca.is_equal(ca.SX(found[0].argument), ca.SX(found[1].argument), 10):
+            raise ConfigError("friction of strut and damper at two places cannot be simulated exactly; allowed: one of the two")
+        ode, alg = (ca.substitute(rows, found[1].mode, found[0].mode) for rows in (dae.ode, dae.alg))
+        outputs = {name: ca.substitute(ca.SX(value), found[1].mode, found[0].mode) for name, value in dae.outputs.items()}
+        dae = replace(dae, ode=ode, alg=alg, outputs=outputs)
+    return dae, found[0] if found else None
+
+
+def _grip(dae: DAE, friction: Switch | None) -> Any:
+    """Rate at which the friction rubs; its derivative without friction; what full friction takes off that; d rate/dx."""
+    if friction is None:
+        return ca.SX.zeros(3 + dae.x.numel())
+    rate = ca.SX(friction.argument)
+    slope = ca.jacobian(rate, dae.x)
+    if dae.z.numel():
+        slope -= ca.jacobian(rate, dae.z) @ ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ ca.jacobian(dae.alg, dae.x)
+    change = slope @ dae.ode
+    return ca.vertcat(rate, ca.substitute(change, friction.mode, 0), -ca.jacobian(change, friction.mode), slope.T)
+
+
 class _Fast:
     """A CasADi function of vectors, called without its overhead (about 20 us)."""
 
@@ -214,7 +248,6 @@ class _Run:
         self._torque, self._unbalance = disturbance.yaw_torque, disturbance.unbalance_moment
         self._wheel_rate = speed / model.study.gear.wheel_radius
         self._point, self._external = np.array([speed, load, 0.0]), 2
-        self._yaw_rate = model.yaw_rate
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
@@ -223,7 +256,7 @@ class _Run:
         self._x0 = self._relaxed(np.array(disturbance.start(model.state_names)))
         self._z = model.first_guess(self._x0, self._z, self._modes, self._point)[0].copy()
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
-        self._max_step = 2 * math.pi / fastest_rate(model.gear.matrices(speed, load)[0]) / steps
+        self._max_step = 2 * math.pi / fastest_rate(model.gear.visible(speed, load)[0]) / steps
 
     def _relaxed(self, given: np.ndarray) -> np.ndarray:
         """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""
@@ -235,7 +268,7 @@ class _Run:
         return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
-        """ode, Newton step, arguments of the corners, torque without friction; with the linkage closed."""
+        """ode, Newton step, arguments of the corners, and `_grip`; with the linkage closed."""
         self._point[self._external] = self._torque
         if self._unbalance:
             self._point[self._external] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
@@ -253,10 +286,13 @@ class _Run:
         raise _CannotClose
 
     def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
-        rate = self._evaluated(t, x)[0].copy()
-        if self._sticks:
-            rate[self._yaw_rate] = 0.0
-        return rate
+        found = self._evaluated(t, x)
+        if not self._sticks:
+            return found[0].copy()
+        _, drive, most, *slope = found[3]
+        self._modes[-1] = drive / most  # the friction that keeps it so
+        rate = self._evaluated(t, x)[0]
+        return rate - np.dot(slope, rate) / np.dot(slope, slope) * np.array(slope)  # and not even rounding moves it
 
     def rows_at(self, time: np.ndarray) -> tuple[list[np.ndarray], str]:
         """States and outputs at `time`, and why it ended early."""
@@ -302,12 +338,11 @@ class _Run:
             return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i])
 
         def grip(t: float, x: np.ndarray) -> float:
-            if self._sticks:
-                return self._model.friction_torque - abs(float(self._evaluated(t, x)[3][0]))
-            return float(x[self._yaw_rate] * self._modes[-1])
+            rate, drive, most = self._evaluated(t, x)[3][:3]
+            return float(most - abs(drive) if self._sticks else rate * self._modes[-1])
 
         functions = [corner(i) for i in range(self._model.corners)]
-        functions += [grip] if self._model.friction_torque else []
+        functions += [grip] if self._model.sticks else []
         for function in functions:
             function.terminal, function.direction = True, -1  # type: ignore[attr-defined]  # how SciPy is told
         return functions
@@ -320,11 +355,11 @@ class _Run:
         others = [i for i in range(self._model.corners) if i not in passed]
         if self._model.corners in passed and self._sticks:
             self._settle(t, x, others)
-            torque = float(self._evaluated(t, x)[3][0])
-            self._sticks, self._modes[-1] = False, np.sign(torque)
+            self._sticks, self._modes[-1] = False, np.sign(self._evaluated(t, x)[3][1])
             return
         if self._model.corners in passed:
-            x[self._yaw_rate] = 0.0
+            rate, _, _, *slope = self._evaluated(t, x)[3]
+            x -= rate * np.array(slope) / np.dot(slope, slope)
         self._settle(t, x, [*others, self._model.corners])
 
     def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
@@ -336,11 +371,11 @@ class _Run:
                 if i < self._model.corners:
                     side = arguments[i] if arguments[i] else ahead[i]
                     self._modes[i] = np.sign(side) if side else self._modes[i]
-        if not self._model.friction_torque or self._model.corners not in which:
+        if not self._model.sticks or self._model.corners not in which:
             return
-        if x[self._yaw_rate] == 0.0:
-            torque = float(self._evaluated(t, x)[3][0])
-            self._sticks = abs(torque) <= self._model.friction_torque
-            self._modes[-1] = 0.0 if self._sticks else np.sign(torque)
+        rate, drive, most = self._evaluated(t, x)[3][:3]
+        if abs(rate) <= STILL:
+            self._sticks = abs(drive) <= most > 0  # in a gap nothing rubs
+            self._modes[-1] = 0.0 if self._sticks else np.sign(drive)
         else:
-            self._sticks, self._modes[-1] = False, np.sign(x[self._yaw_rate])
+            self._sticks, self._modes[-1] = False, np.sign(rate)

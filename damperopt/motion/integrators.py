@@ -12,7 +12,7 @@ import tempfile
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import casadi as ca
@@ -218,11 +218,22 @@ def _options(engine: str, tolerance: float, unknowns: int) -> dict[str, Any]:
 
 def _create(engine: str, problem: dict[str, ca.SX], grid: list[float], options: dict[str, Any], compiled: bool) -> ca.Function:
     if compiled:
-        files = {"cleanup": False, "flags": ["-O3", "-march=native"], "verbose": False}  # removed with their folder
-        jit = {"jit": True, "jit_cleanup": False, "compiler": "shell", "jit_options": files}
+        inputs, outputs = ([name for name in names if name in problem] for names in (ca.dyn_in(), ca.dyn_out()))
+        equations = ca.Function("equations", problem, inputs, outputs)
         try:
-            with tempfile.TemporaryDirectory(prefix="damperopt-") as folder, contextlib.chdir(folder):
-                return ca.integrator("motion", engine, problem, 0, grid, options | jit)
+            return _compiled(engine, equations.serialize(), tuple(grid), tuple(options.items()))
         except (RuntimeError, OSError) as error:
             warnings.warn(f"the model could not be compiled and will run about ten times slower: {error}", stacklevel=3)
     return ca.integrator("motion", engine, problem, 0, grid, options)
+
+
+@lru_cache(maxsize=64)
+def _compiled(engine: str, equations: str, grid: tuple[float, ...], options: tuple[tuple[str, Any], ...]) -> ca.Function:
+    """Studies that differ in their numbers alone have the same equations: they are translated once in a process."""
+    function = ca.Function.deserialize(equations)
+    symbols = function.sx_in()
+    problem = dict(zip(function.name_in() + function.name_out(), symbols + function.call(symbols), strict=True))
+    files = {"cleanup": False, "flags": ["-O3", "-march=native"], "verbose": False}  # removed with their folder
+    jit = {"jit": True, "jit_cleanup": False, "compiler": "shell", "jit_options": files}
+    with tempfile.TemporaryDirectory(prefix="damperopt-") as folder, contextlib.chdir(folder):
+        return ca.integrator("motion", engine, problem, 0, list(grid), dict(options) | jit)

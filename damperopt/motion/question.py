@@ -10,7 +10,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from ..errors import ConfigError
-from ..stability.linear import LinearGear
+from ..stability.delay import DelayGear
+from ..stability.gear import LinearGear
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 from .measure import fastest_rate
@@ -27,6 +28,9 @@ YAW_RANGE = 1.0
 
 MOST_ACCELERATION = 1e6
 """Yaw acceleration [rad/s^2] by a torque above which nothing is simulated: within 1.5 ms it turns the gear out of its range."""
+
+COARSE = 1e-5
+"""Relative error of eigenvalues above which a contact line as a field has too low an order for a motion."""
 
 UNCLOSED = 1e-9
 """Residual of the closed linkage [m^2, m] above which it counts as not closed."""
@@ -50,7 +54,12 @@ def output_points(gear: LinearGear, speed: float, load: float, duration: float) 
     ConfigError
         If they would be too many.
     """
-    step = 2 * math.pi / fastest_rate(gear.matrices(speed, load)[0]) / PER_CYCLE
+    if isinstance(gear, DelayGear) and (error := gear.field_error(speed, load)) > COARSE:
+        raise ConfigError(
+            f"tyre.contact.order: found one with which eigenvalues at {speed:g} m/s are wrong by {error:.1g} of themselves; "
+            f"allowed: a larger one for motions at this speed ({COARSE:g} at most)"
+        )
+    step = 2 * math.pi / fastest_rate(gear.visible(speed, load)[0]) / PER_CYCLE
     if duration > MAX_POINTS * step:
         longest = MAX_POINTS * step
         raise ConfigError(f"duration: found {duration:g} s; allowed: at most {longest:.3g} s for oscillations this fast")
@@ -83,8 +92,9 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
     limits = [
         ("yaw_angle", YAW_RANGE, f"the yaw angle exceeds {YAW_RANGE:g} rad"),
         ("unclosed", UNCLOSED, "the equations of the closed linkage are not solved"),
-        ("slip_angle", slip_range, f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"),
     ]
+    slip = f"the slip exceeds tyre.slip_range, {math.degrees(slip_range):.4g} deg"
+    limits += [(name, slip_range, slip) for name in names if name.startswith("slip_angle")]  # of every wheel
     stop = study.damper.stop
     if stop is not None and stop.stiffness is None:
         limits.append(("damper_stroke", stop.stroke, f"the damper meets its stop at {stop.stroke * 1e3:.4g} mm"))
@@ -122,11 +132,13 @@ def posed(
     Raises
     ------
     ConfigError
-        If a number is not positive and finite, or the gear lacks what is disturbed.
+        If a number is not positive and finite, the tyre has no data for the load, or the gear lacks what is disturbed.
     """
     for name, value, unit in (("speed", speed, "m/s"), ("load", load, "N"), ("duration", duration, "s")):
         if not 0 < value < np.inf:
             raise ConfigError(f"{name}: found {value}; allowed: a positive number in {unit}")
+    if words := study.beyond_tyre(load):
+        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that the tyre has data for")
     try:
         disturbance = Disturbance.model_validate(disturbance)
     except ValidationError as error:

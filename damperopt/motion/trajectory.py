@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from .measure import crossings, decay, extrema
 
@@ -169,6 +168,8 @@ def _kind_of_amplitudes(amplitudes: np.ndarray) -> Kind:
 
 def _envelope(amplitudes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Numbers and values of the peaks of a beating amplitude; all amplitudes where it does not beat, or no longer does."""
+    from scipy.signal import find_peaks  # a third of a second to import
+
     peaks, _ = find_peaks(np.log(amplitudes + 1e-300), prominence=BEAT)
     if peaks.size < 2 or amplitudes.size - 1 - peaks[-1] > 1.5 * (peaks[-1] - peaks[-2]):
         return np.arange(amplitudes.size), amplitudes

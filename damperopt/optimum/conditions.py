@@ -84,7 +84,10 @@ class HurwitzConditions:
     def __init__(self, slots: Slots):
         weight = ca.SX.sym("weight", len(slots))
         last = f"H{slots.order - 1}"
-        conditions = [lienard_chipart(a) for a in slots.polynomials]
+        unknown = ca.SX.sym("a", slots.order)
+        values = lienard_chipart([1.0, *ca.vertsplit(unknown)])
+        function = ca.Function("conditions", [unknown], [ca.vertcat(*values.values())])
+        conditions = [dict(zip(values, ca.vertsplit(function(ca.vertcat(*a[1:]))), strict=True)) for a in slots.polynomials]
         self.variables, self.parameters = ca.SX(0, 1), weight
         self.rows = ca.vertcat(
             *(-value * (weight[i] if name == last else 1) for i, slot in enumerate(conditions) for name, value in slot.items())

@@ -78,10 +78,11 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
-    least_stroke = required.stroke_ratio * required.apex_clearance
-    relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
-    stroke = sized.event.stroke if sized.event.service_stroke is None else sized.event.service_stroke
-    blocks.append(Constraint("working_stroke", stroke, least_stroke, True, "m", relaxed, ratio=True))
+    if not study.damper.ROTARY:  # which has no apex
+        least_stroke = required.stroke_ratio * required.apex_clearance
+        relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
+        stroke = sized.event.stroke if sized.event.service_stroke is None else sized.event.service_stroke
+        blocks.append(Constraint("working_stroke", stroke, least_stroke, True, "m", relaxed, ratio=True))
     return [replace(block, kind="strength") for block in blocks]
 
 
@@ -132,6 +133,8 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     -------
     list of Constraint
     """
+    if study.damper.ROTARY:  # nothing reaches out
+        return []
     required, model = study.requirements, study.mass
     reach, keys = linkage.reach, ("requirements.lug_distance", "requirements.reach")
     blocks = [

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..motion.decay import DecayPoint
 from ..results import OperatingPoint
 from ..stability.worst import worst_points
 from ..study.study import Study
 from .damping_exchange import DampingPoint
 from .program import HurwitzProgram, Program
+from .rational import STILL_CORRECTION
 from .solve import LocalSolution, NlpSolver
 
 __all__ = ["EnvelopeSolution", "allowed_abscissa", "first_points", "missed_points", "solve_envelope"]
@@ -79,16 +82,19 @@ def solve_envelope(
     """
     study = solver.problem.study
     allowed = allowed_abscissa(study)
-    points, design, worst = list(points), dict(start), []
+    points, design, worst, before = list(points), dict(start), [], np.inf
+    exact = solver.problem.search_model is solver.problem.model
     for rounds in range(1, MAX_ROUNDS + 1):
         solution = solver.solve(design, points, form)
         if not solution.converged:
             return EnvelopeSolution(solution, (), rounds, False)
         worst = worst_points(solver.problem.model.at(solution.design), study.envelope, allowed)
-        if worst[0].abscissa <= allowed:
+        still = exact or abs(solution.objective - before) <= STILL_CORRECTION * solution.objective
+        before = solution.objective
+        if worst[0].abscissa <= allowed and still:
             return EnvelopeSolution(solution, tuple(worst), rounds, True)
         new = missed_points(worst, allowed, points)
-        if not new:  # the program holds the point already and cannot meet it more exactly
+        if not new and still:  # the program holds the point already and cannot meet it more exactly
             break
         points += new
         design = solution.design

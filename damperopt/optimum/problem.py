@@ -25,6 +25,7 @@ from ..strength.limit_event import peaks_of
 from ..study.study import Study
 from ..symbols import data_names, data_values, symbolic
 from .constraints import Constraint, geometry, strength
+from .rational import searched_study
 
 __all__ = ["DesignProblem", "ScaledVariable"]
 
@@ -68,19 +69,22 @@ class DesignProblem:
         SI units of the variables.
     has_one_damping, plain : bool
         Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own.
+    model, search_model : LinearModel
+        Of the study, and of the rational one that the program holds in its place where the tyre has a delay.
     shifted_matrix : casadi.Function
         (design, data, speed, load) -> A + (margin + reserve) 1, stable iff the margin holds.
     """
 
     def __init__(self, study: Study):
-        self.study = study
+        self.study, searched = study, searched_study(study)
         self.model = LinearModel(study)
+        self.search_model = self.model if searched is study else LinearModel(searched)
         self.design_names = study.variable_names
         self.data = np.array(data_values(study))
         self.data_names = data_names(study)
         self.load_limit = max(study.envelope.loads)
 
-        symbols = symbolic(study)
+        symbols = symbolic(searched)
         dae = build(symbols)
         design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
         load, factors = ca.SX.sym("load_limit"), ca.SX.sym("factors", len(PEAKS))
@@ -106,12 +110,12 @@ class DesignProblem:
         self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
         damping = symbols.study.damper.damping({**design, **link.as_printed})
         self.has_one_damping = damping is not None
-        self.plain = self.has_one_damping and dae.x.numel() == len(study.gear.STATES) + len(study.tyre.states)
+        self.plain = self.has_one_damping and dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
         damping = ca.SX.nan() if damping is None else damping * link.damper_lever**2
         self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, damping])
 
         margin = symbols.study.requirements.stability_margin + study.solver.margin_reserve
-        shifted = self.model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
+        shifted = self.search_model.state_matrix(dae.design, dae.speed, dae.load, symbols.data)
         shifted += margin * ca.SX.eye(dae.x.numel())
         self.shifted_matrix = ca.Function("shifted", [dae.design, symbols.data, dae.speed, dae.load], [shifted])
         own_variables = [ScaledVariable(size.name, size.start, size.lower, size.upper, True) for size in own_sizes]
@@ -144,7 +148,14 @@ class DesignProblem:
     @cached_property
     def screening(self) -> Screening:
         """The gear with any stiffness and damping, built when it is first asked for."""
-        return Screening(self.study)
+        return Screening(searched_study(self.study))
+
+    def corrections(self, design: Mapping[str, float], speeds: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """What the exact abscissa of a design has beyond that of the rational model that the program holds, (m,) [1/s]."""
+        if self.search_model is self.model:
+            return np.zeros(len(speeds))
+        exact, rational = (model.at(design).abscissa(speeds, loads) for model in (self.model, self.search_model))
+        return exact - rational
 
     # plain functions of a design, for reports, tests and other optimisers. `factors` are simulated over estimated peaks of
     # the limit event, of `factors_of`; left out, a torque must be the limit event. None of them simulates.

@@ -81,7 +81,7 @@ class Program(Protocol):
     rows : Blocks
         Of g: ``strength`` and geometry; ``decay``; ``damping`` of the yaw mode; ``stability``.
     parameters : Blocks
-        Of p: ``data``, ``load_limit``; ``speeds``, ``loads`` and ``rates`` of the slots; with simulated peaks
+        Of p: ``data``, ``load_limit``; ``speeds``, ``loads``, ``rates`` and ``corrections`` of the slots; with simulated peaks
         ``simulated``, a switch, and ``peaks``, their models; with a decay requirement ``cuts``; with a damping ratio
         ``damping_cuts``; ``stability``.
     """
@@ -126,7 +126,9 @@ class _Common:
         design, sizes = physical[:n], physical[n:]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
         V, F_z, rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
+        corrections = ca.SX.sym("corrections", slots)
         self.parameters = {"data": data, "load_limit": load_limit, "speeds": V, "loads": F_z, "rates": rate}
+        self.parameters |= {"corrections": corrections}
         factors: Any = ESTIMATED
         known = monomials(self.x[: len(problem.design_names)])
         if problem.study.required.limit_event == "simulated":
@@ -151,8 +153,9 @@ class _Common:
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
-        shifted = [problem.shifted_matrix(design, data, V[i], F_z[i]) / rate[i] for i in range(slots)]
-        self.slots = Slots([characteristic_polynomial(A) for A in shifted], rate)
+        polynomial = _polynomial(problem)
+        slots_in = ([design, data, V[i], F_z[i], corrections[i], rate[i]] for i in range(slots))
+        self.slots = Slots([[1.0, *ca.vertsplit(polynomial(*given))] for given in slots_in], rate)
 
     def numbers(
         self,
@@ -169,9 +172,11 @@ class _Common:
         V, F_z = np.array(filled).T
         shift = problem.study.solver.margin_reserve
         shift += problem.study.required.stability_margin if margin is None else margin
-        roots = np.linalg.eigvals(problem.model.at(design).matrices(V, F_z)) + shift
+        corrections = problem.corrections(design, V, F_z)
+        roots = np.linalg.eigvals(problem.search_model.at(design).matrices(V, F_z)) + shift + corrections[:, None]
         rates = np.exp(np.log(np.abs(roots) + SLOWEST_ROOT).mean(axis=1))
         values = {"data": problem.data, "load_limit": problem.load_limit, "speeds": V, "loads": F_z, "rates": rates}
+        values["corrections"] = corrections
         n = len(problem.design_names)
         if "peaks" in self.parameters:
             models = [peak.about_zero() for peak in peaks] or [Cut.constant(0.0, n).about_zero()] * len(PEAKS)
@@ -189,6 +194,15 @@ class _Common:
         x0 = np.clip(self.problem.scaled(design), lower, upper)
         around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
         return Limits(np.maximum(lower, x0 - around), np.minimum(upper, x0 + around), x0)
+
+
+def _polynomial(problem: DesignProblem) -> ca.Function:
+    """(design, data, speed, load, correction, rate) -> a_1, ..., a_n of the shifted polynomial, time scaled by the rate."""
+    inputs = [ca.SX.sym("design", len(problem.design_names)), ca.SX.sym("data", len(problem.data))]
+    inputs += [ca.SX.sym(name) for name in ("speed", "load", "correction", "rate")]
+    A = problem.shifted_matrix(*inputs[:4])
+    scaled = (A + inputs[4] * ca.SX.eye(A.shape[0])) / inputs[5]
+    return ca.Function("polynomial", inputs, [ca.vertcat(*characteristic_polynomial(scaled)[1:])])
 
 
 class _Program:

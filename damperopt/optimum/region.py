@@ -92,7 +92,7 @@ def feasible_region(
         factors = problem.factors_of(design, limit_event)
     found = problem.over_designs(designs, factors)
     k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
-    if problem.plain:
+    if problem.plain and problem.search_model is problem.model:
         stability = problem.screening.least_conditions(k_psi, c_psi, worst)
         near = _beside_the_limit(stability.reshape(X.shape)).ravel()
         abscissae = problem.screening.worst_abscissae(k_psi[near], c_psi[near], worst, SPEEDS)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
+from ..linkages.assembly import layouts
 from ..linkages.elastic import elastic_linkage
 from ..motion.decay import DecayAnalysis
 from ..motion.simulate import Simulator
@@ -21,9 +22,19 @@ from ..results import DesignResult
 from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
-from .tables import write_chart, write_chart_json, write_modes
+from ..tyres.curves import TyreCurves
+from .tables import write_chart, write_chart_json, write_modes, write_tyre
 
-__all__ = ["Answer", "DesignFigure", "design_chart", "draw_modes", "figures_of", "write_chart_files", "write_design"]
+__all__ = [
+    "Answer",
+    "DesignFigure",
+    "design_chart",
+    "draw_modes",
+    "figures_of",
+    "write_chart_files",
+    "write_design",
+    "write_tyre_files",
+]
 
 SPEEDS = 400
 """Speeds of a table and a figure of modes."""
@@ -91,6 +102,9 @@ def figures_of(result: DesignResult) -> tuple[DesignFigure, ...]:
     if result.stability is None or result.mass is None:
         return ()
     absent = {"decay"} if result.decay is None else set()
+    absent |= (
+        {"linkage", "chart", "region"} if layouts()[result.topology].ROTARY else set()
+    )  # no members, and no spring to vary
     absent |= set() if any(s.value != 0 for s in result.sensitivities) else {"tornado"}
     return tuple(figure for figure in _FIGURES if figure.name not in absent)
 
@@ -312,6 +326,28 @@ def write_chart_files(
     if filled is not None:
         np.savez_compressed(place / "map.npz", x=filled.x, y=filled.y, values=filled.values, quantity=np.array(filled.quantity))
     _save({"chart": drawn}, place)
+
+
+def write_tyre_files(place: Path, record: TyreCurves) -> None:
+    """Tables of a tyre as CSV, and its figures.
+
+    Parameters
+    ----------
+    place : Path
+        Folder.
+    record : TyreCurves
+    """
+
+    def drawing(name: str) -> Callable[[], Any]:
+        def drawn() -> Any:
+            from .. import figures
+
+            return getattr(figures, name)(record)
+
+        return drawn
+
+    write_tyre(place, record)
+    _save({"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}, place)
 
 
 def _drawing(figure: DesignFigure, answer: Answer) -> Callable[[], Any]:

@@ -16,6 +16,7 @@ from ..results import DesignResult
 from ..stability.modes import ModeTable
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
+from ..tyres.curves import TyreCurves
 
 __all__ = [
     "write_chart",
@@ -24,6 +25,7 @@ __all__ = [
     "write_motion",
     "write_ranking",
     "write_trajectory",
+    "write_tyre",
 ]
 
 MODE_COLUMNS = (
@@ -112,3 +114,22 @@ def write_chart_json(path: Path, record: StabilityChart) -> None:
         for curve in family["curves"]:
             curve.update({key: curve[key].tolist() for key in ("points", "hopf", "frequency", "corners")})
     path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+
+
+def write_tyre(folder: Path, record: TyreCurves) -> None:
+    """A tyre over load as ``tyre.csv``, its force and moment over slip as ``tyre-slip.csv``; SI."""
+    with open(folder / "tyre.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["load [N]", *(f"{name} [{column.unit}]" for name, column in record.table.items())])
+        for i, load in enumerate(record.loads):
+            writer.writerow([f"{load:.9g}", *(_or_empty(column.values[i]) for column in record.table.values())])
+    with open(folder / "tyre-slip.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["load [N]", "slip_angle [rad]", "side_force [N]", "aligning_moment [N m]"])
+        for load, force, moment in zip(record.drawn, record.force, record.moment, strict=True):
+            for alpha, F_y, M_z in zip(record.slips, force, moment, strict=True):
+                writer.writerow([f"{load:.9g}", f"{alpha:.9g}", _or_empty(F_y), _or_empty(M_z)])
+
+
+def _or_empty(value: float) -> str:
+    return f"{value:.9g}" if np.isfinite(value) else ""

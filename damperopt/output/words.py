@@ -211,14 +211,18 @@ def certificate(result: DesignResult) -> str:
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",
         "bernstein": "exact Bernstein bounds over rectangles of speed and load",
-    }.get(proof.method, proof.method)
+        "balls": "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and load",
+    }.get(proof.method.partition(",")[0], proof.method)
     speeds = _range(proof.speed, "m/s", True)
-    loads = _range(proof.loads, "N", proof.method == "bernstein")
+    loads = _range(proof.loads, "N", proof.over_a_range)
     where = f"margin {proof.margin:g} 1/s, every real speed from {speeds}, {loads}"
     reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
     if not proof.proved:
         return f"NOT proved: {where}. {reason}"
-    return f"Proved in rational arithmetic, without rounding: {where}. How: {method}. {reason}"
+    arithmetic = (
+        "ball arithmetic, rounding enclosed" if proof.method.startswith("balls") else "rational arithmetic, without rounding"
+    )
+    return f"Proved in {arithmetic}: {where}. How: {method}. {reason}"
 
 
 def verification(result: DesignResult) -> list[str]:

@@ -15,19 +15,18 @@ rational arithmetic, with subdivision, for a rectangle of speeds and loads. No p
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 import flint
 import numpy as np
 
-from ..errors import CertificateError
 from ..results import Certificate
-from ..stability.family import coefficients
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from ..symbols import data_values
+from .delay import certify_delay
+from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
 from .zeros import zero_in_rectangle, zeros_in_range
 
@@ -75,6 +74,8 @@ def certify(
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
     model = LinearModel(study) if model is None else model
+    if model.structure is not None:
+        return certify_delay(study, design, margin, model)
     method = "bernstein" if envelope.load_is_range else "sturm"
 
     def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
@@ -139,36 +140,9 @@ class _Family:
         key = None if self._powers.load is not None else load
         if key not in self._split:
             ends = [decimal(load)] if self._powers.load is None else [decimal(F) for F in self._envelope.loads]
-            self._split[key] = self._made(sorted(ends))
+            speeds = decimal(self._envelope.speed.min), decimal(self._envelope.speed.max)
+            self._split[key] = parts_in_powers(self.matrix, self._powers, speeds, sorted(ends))
         return self._split[key]
-
-    def _made(self, loads: list[Q]) -> dict[tuple[int, int], flint.fmpq_mat]:
-        low, high = decimal(self._envelope.speed.min), decimal(self._envelope.speed.max)
-        # sampled in the envelope, at powers of two, which keep the numbers short
-        V_0 = _power_of_two(math.sqrt(float(low) * float(high)))
-        speeds = [V_0 * Q(2) ** (k - len(self._powers.speed) // 2) for k in range(len(self._powers.speed))]
-        powers = self._powers.load
-        if powers is None:
-            F_powers: tuple[int, ...] = (0,)
-            samples_at = loads
-        else:
-            F_0 = _power_of_two(float(loads[-1]))
-            F_powers, samples_at = powers, [F_0 / Q(2) ** k for k in range(len(powers))]
-        by_speed, by_load = _inverse(speeds, self._powers.speed), _inverse(samples_at, F_powers)
-        at_loads = [coefficients([self.matrix(V, F) for V in speeds], by_speed) for F in samples_at]
-        parts = {
-            (i, j): part
-            for i, samples in zip(self._powers.speed, zip(*at_loads, strict=True), strict=True)
-            for j, part in zip(F_powers, coefficients(list(samples), by_load), strict=True)
-        }
-        for V, F in {(low, loads[0]), (high, loads[-1]), (V_0 * Q(7, 5), (loads[0] + loads[-1] * 3) / 4)}:
-            rebuilt = sum((part * (V**i * F**j) for (i, j), part in parts.items()), flint.fmpq_mat(self._n, self._n))
-            if rebuilt != self.matrix(V, F):
-                raise CertificateError(
-                    f"the state matrix is no combination of the powers {list(self._powers.speed)} of V and {list(F_powers)} of "
-                    "F_z that its components declare: no certificate for this model"
-                )
-        return parts
 
     def marginal_throughout(self, load: float) -> bool:
         """Whether a root lies on the line at every speed (a condition vanishes identically) and none to its right."""
@@ -220,17 +194,6 @@ class _Family:
         ends = [speeds[0], *zeros, speeds[1]]
         candidates = np.array([*zeros, *((a + b) / 2 for a, b in itertools.pairwise(ends))])
         return float(candidates[self._gear.abscissa(candidates, load).argmax()])
-
-
-def _power_of_two(value: float) -> Q:
-    """The power of two next below a positive number."""
-    return Q(2) ** math.floor(math.log2(value))
-
-
-def _inverse(points: list[Q], powers: tuple[int, ...]) -> list[list[Q]]:
-    """Inverse of the matrix of powers at points, as rows."""
-    inverse = flint.fmpq_mat([[point**i for i in powers] for point in points]).inv()
-    return [[inverse[i, k] for k in range(len(points))] for i in range(len(points))]
 
 
 def _characteristic(M: list[list[Any]], ring: Any) -> list[Any]:

@@ -170,8 +170,7 @@ def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[
     """Decay ratio at one speed and load, infinite where the motion leaves the validity of the model, and the motion."""
     required = simulator.study.required.decay
     assert required is not None
-    A = simulator.gear.matrices(speed, load)[0]
-    names = simulator.state_names
+    A, names = simulator.gear.visible(speed, load)
     latest = latest_count(A, required.cycles, names)
     duration = (required.cycles + MORE_CYCLES) * 2 * math.pi / slowest_rate(A, names)
     while True:

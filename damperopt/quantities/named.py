@@ -23,6 +23,8 @@ class State:
         Name of the rate that goes with an angle, or of the angle that goes with a rate.
     hidden : bool
         An internal state, left out of tables and figures.
+    even : bool
+        Whether a mirrored motion has it unchanged, as a current; others change sign.
     """
 
     name: str
@@ -30,6 +32,7 @@ class State:
     freedom: str
     twin: str | None = None
     hidden: bool = False
+    even: bool = False
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ _SCALES: dict[str, tuple[str, float]] = {
     "N/m": ("kN/m", 1e-3),
     "N m": ("kN m", 1e-3),
     "N m/rad": ("kN m/rad", 1e-3),
+    "N/rad": ("kN/rad", 1e-3),
+    "N/m^2": ("MN/m^2", 1e-6),
 }
 """Unit and factor for quantities whose SI unit is too large or too small for a landing gear; all others stay in SI."""
 

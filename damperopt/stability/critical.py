@@ -9,8 +9,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..errors import ConfigError
+from .delay import DelayGear
+from .delay_line import DelayLine
 from .family import Line
-from .linear import LinearGear
+from .gear import LinearGear
 
 __all__ = ["CriticalSpeed", "along_loads", "along_speeds", "critical_speeds", "marginal_throughout"]
 
@@ -60,14 +62,16 @@ class CriticalSpeed:
     touching: bool = False
 
 
-def along_speeds(gear: LinearGear, load: float, low: float, high: float) -> Line:
-    """The gear at one load [N] as a polynomial in speed, from `low` to `high` [m/s]."""
+def along_speeds(gear: LinearGear, load: float, low: float, high: float) -> Line | DelayLine:
+    """The gear at one load [N] as a polynomial in speed, from `low` to `high` [m/s]; with a delay by its roots."""
+    if isinstance(gear, DelayGear):
+        return DelayLine(gear, load, low, high)
     return Line(lambda V: gear.matrices(V, load), gear.powers.speed, low, high, "speed")
 
 
 def along_loads(gear: LinearGear, speed: float, low: float, high: float) -> Line | None:
     """The gear at one speed [m/s] as a polynomial in the load, from `low` to `high` [N]; None where it is none."""
-    if gear.powers.load is None:
+    if gear.powers.load is None or isinstance(gear, DelayGear):
         return None
     return Line(lambda F: gear.matrices(speed, F), gear.powers.load, low, high, "load")
 
@@ -127,7 +131,7 @@ def marginal_throughout(gear: LinearGear, load: float, low: float, high: float, 
     """
     if low == high:
         return False
-    roots = np.linalg.eigvals(gear.matrices(np.geomspace(low, high, 9), load))
+    roots = gear.roots(np.geomspace(low, high, 9), load)
     return bool((np.abs(roots.real.max(axis=1) + margin) <= 1e3 * ROUNDING * np.abs(roots).max(axis=1)).all())
 
 
@@ -135,8 +139,7 @@ def _at(gear: LinearGear, load: float, rough: float, margin: float) -> Iterator[
     """Crossings at a candidate; none where no root of the gear is on the line, or one only by rounding."""
 
     def roots(V: float) -> np.ndarray:
-        moved: np.ndarray = np.linalg.eigvals(gear.matrices(V, load)[0]) + margin
-        return moved
+        return gear.roots(V, load)[0] + margin
 
     here = roots(rough)
     largest = np.abs(here).max()

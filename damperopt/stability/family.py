@@ -24,7 +24,7 @@ from scipy.linalg import eigvals, matrix_balance
 
 from ..errors import ConfigError
 
-__all__ = ["Line", "Powers", "coefficients", "compound", "powers_of"]
+__all__ = ["Line", "Powers", "coefficients", "compound", "powers_of", "united"]
 
 KEPT = 1e-9
 """Relative to the terms of an entry: how closely the declared powers must give a matrix at points that made none of them."""
@@ -66,7 +66,21 @@ def powers_of(study: Any) -> Powers:
     -------
     Powers
     """
-    parts = [study.gear, study.tyre, getattr(study.tyre, "contact", study.tyre), study.damper]
+    return united(study.gear, study.tyre, getattr(study.tyre, "contact", study.tyre), study.damper)
+
+
+def united(*parts: Any) -> Powers:
+    """Powers that parts of a model declare, united.
+
+    Parameters
+    ----------
+    *parts : object
+        Components, or others with `SPEED_POWERS` and `LOAD_POWERS`.
+
+    Returns
+    -------
+    Powers
+    """
     speed = [getattr(part, "SPEED_POWERS", Powers.speed) for part in parts]
     declared = [getattr(part, "LOAD_POWERS", Powers.load) for part in parts]
     load = [powers for powers in declared if powers is not None]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from typing import Any
 
 import casadi as ca
@@ -13,10 +12,12 @@ import numpy as np
 from ..dynamics import build
 from ..errors import ConfigError
 from ..expressions.dae import DAE
-from ..quantities.named import State
 from ..study.study import Study
 from ..symbols import data_values, symbolic
-from .family import Powers, powers_of
+from .delay import delay_gear
+from .family import powers_of
+from .gear import LinearGear, spectral_abscissa
+from .response import Structure
 
 __all__ = ["LinearGear", "LinearModel", "linear_gear", "linearise", "spectral_abscissa"]
 
@@ -41,38 +42,6 @@ def linearise(dae: DAE) -> ca.Function:
     return ca.Function("state_matrix", [dae.design, dae.speed, dae.load, dae.data], [A])
 
 
-@dataclass(frozen=True)
-class LinearGear:
-    """State matrices of one gear with one design.
-
-    Attributes
-    ----------
-    matrices : callable
-        (speeds, loads), each (m,) or scalar [m/s], [N] -> (m, n, n) state matrices.
-    states : tuple of State
-        Declarations of the n states.
-    powers : Powers
-        Powers of speed and load in the matrices.
-    """
-
-    matrices: Callable[[Any, Any], np.ndarray]
-    states: tuple[State, ...]
-    powers: Powers = field(default_factory=Powers)
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """Names of the states."""
-        return tuple(state.name for state in self.states)
-
-    def index(self, name: str) -> int:
-        """Position of a state."""
-        return self.state_names.index(name)
-
-    def abscissa(self, speeds: Any, loads: Any) -> np.ndarray:
-        """Spectral abscissa [1/s], (m,)."""
-        return spectral_abscissa(self.matrices(speeds, loads))
-
-
 class LinearModel:
     """Linear model of a study, built once; `at(design)` gives the gear with a design.
 
@@ -87,6 +56,7 @@ class LinearModel:
         self.design_names = dae.design_names
         self.state_matrix = linearise(dae)
         self.powers = powers_of(study)
+        self.structure = None if study.tyre.contact.RATIONAL else Structure(study)
         self._data = ca.DM(data_values(study))
 
     def at(self, design: Mapping[str, float]) -> LinearGear:
@@ -105,7 +75,9 @@ class LinearModel:
             columns = self.state_matrix(ca.repmat(values, 1, V.size), V.reshape(1, -1), F_z.reshape(1, -1), self._data)
             return columns.full().reshape(n, V.size, n).transpose(1, 0, 2)
 
-        return LinearGear(matrices, self.states, self.powers)
+        if self.structure is None:
+            return LinearGear(matrices, self.states, self.powers)
+        return delay_gear(self.structure, design, matrices, self.states)
 
 
 def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> LinearGear:
@@ -125,24 +97,3 @@ def linear_gear(study: Study, design: Mapping[str, float] | None = None) -> Line
     if design is None:
         design = study.start
     return model.at(design)
-
-
-def spectral_abscissa(A: np.ndarray) -> np.ndarray:
-    """Largest real part of the eigenvalues of stacked matrices.
-
-    Parameters
-    ----------
-    A : ndarray
-        (..., n, n) [1/s]
-
-    Returns
-    -------
-    ndarray
-        (...) [1/s]
-
-    Examples
-    --------
-    >>> float(spectral_abscissa(np.array([[0.0, 1.0], [-4.0, -0.6]])).round(6))
-    -0.3
-    """
-    return np.linalg.eigvals(A).real.max(axis=-1)

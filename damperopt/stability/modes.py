@@ -8,9 +8,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..quantities.named import State
-from .linear import LinearGear
+from .gear import LinearGear
 
-__all__ = ["ModeTable", "track_modes"]
+__all__ = ["ModeTable", "followed", "track_modes"]
 
 FINE = 400
 """Speeds between the ends along which modes are followed, beside those asked for."""
@@ -89,27 +89,73 @@ def track_modes(gear: LinearGear, speeds: np.ndarray, load: float) -> ModeTable:
     speeds = np.asarray(speeds, float)
     between = np.clip(np.geomspace(speeds[0], speeds[-1], FINE), speeds[0], speeds[-1]) if len(speeds) > 1 else speeds
     fine = np.unique(np.concatenate([speeds, between]))
-    values, right = np.linalg.eig(gear.matrices(fine, load))
-    # pinv, since a defective matrix (coincident roots) has no inverse of its eigenvectors
-    participation = np.abs(np.linalg.pinv(right).transpose(0, 2, 1) * right)
-    participation /= np.maximum(participation.sum(axis=1, keepdims=True), 1e-300)
+    values, participation = gear.modes(fine, load)
+    columns, order = followed(fine, values, len(gear.principal))
+    # named over the speeds between alone, so that the speeds asked for do not tip the balance
+    own = np.searchsorted(fine, between)
+    shares = np.mean([participation[k][:, order[k]] for k in own], axis=0)
+    names = _names(gear.principal, shares, columns[own])
+    more = _overtaking(fine, values, columns)
+    eigenvalues = np.column_stack([columns, *more])
+    return ModeTable(speeds, load, names + ("contact line",) * len(more), eigenvalues[np.searchsorted(fine, speeds)])
 
-    order = [np.argsort(values[0].imag + 1e-6 * values[0].real)]
-    followed = [values[0][order[0]]]
-    for k in range(1, len(fine)):
+
+def followed(speeds: np.ndarray, values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Some of the eigenvalues followed over speed.
+
+    Parameters
+    ----------
+    speeds : ndarray
+        (m,) ascending [m/s].
+    values : ndarray
+        (m, k) eigenvalues at each, in any order.
+    count : int
+        How many are followed.
+
+    Returns
+    -------
+    tuple of ndarray
+        (m, count) eigenvalues, each column one that is followed, and which of `values` they are at each speed.
+
+    Notes
+    -----
+    Where there are more than are followed, those of a delay, the fastest speed begins: there the others lie far to the left.
+    """
+    if values.shape[1] > count:
+        columns, order = _along(speeds[::-1], values[::-1], np.argsort(-values[-1].real)[:count])
+        return columns[::-1], order[::-1]
+    return _along(speeds, values, np.argsort(values[0].imag + 1e-6 * values[0].real))
+
+
+def _along(speeds: np.ndarray, values: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues followed from those of numbers `first` at the first speed on, and their numbers."""
+    order = [first]
+    followed = [values[0][first]]
+    for k in range(1, len(speeds)):
         guess = followed[-1]
-        ratio = (fine[k] - fine[k - 1]) / (fine[k - 1] - fine[k - 2]) if k > 1 else np.inf
+        ratio = (speeds[k] - speeds[k - 1]) / (speeds[k - 1] - speeds[k - 2]) if k > 1 else np.inf
         if ratio < LONGEST_REACH:
             guess = guess + (followed[-1] - followed[-2]) * ratio
         _, match = linear_sum_assignment(np.abs(guess[:, None] - values[k][None, :]))
         order.append(match)
         followed.append(values[k][match])
-    # named over the speeds between alone, so that the speeds asked for do not tip the balance
-    own = np.searchsorted(fine, between)
-    shares = np.mean([participation[k][:, order[k]] for k in own], axis=0)
-    eigenvalues = np.array(followed)
-    names = _names(gear.states, shares, eigenvalues[own])
-    return ModeTable(speeds, load, names, eigenvalues[np.searchsorted(fine, speeds)])
+    return np.array(followed), np.array(order)
+
+
+def _overtaking(speeds: np.ndarray, values: np.ndarray, columns: np.ndarray) -> list[np.ndarray]:
+    """Eigenvalues (m,) that lie right of all that are followed at some speed, followed too, both of a pair."""
+    more: list[np.ndarray] = []
+    while len(more) < values.shape[1] - columns.shape[1]:
+        beyond = values.real.max(axis=1) - np.column_stack([columns, *more]).real.max(axis=1)
+        at = int(beyond.argmax())
+        if beyond[at] <= 1e-9 * (1 + np.abs(values[at]).max()):
+            break
+        top = values[at].real.max()
+        first = np.flatnonzero(values[at].real >= top - 1e-9 * (1 + abs(top)))
+        after, _ = _along(speeds[at:], values[at:], first)
+        before, _ = _along(speeds[at::-1], values[at::-1], first)
+        more += list(np.vstack([before[:0:-1], after]).T)
+    return more
 
 
 def _names(states: tuple[State, ...], shares: np.ndarray, followed: np.ndarray) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ speed give the characteristic polynomial of every design. Used to draw feasible 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 import casadi as ca
@@ -32,7 +33,7 @@ CREEPING = 1.0
 """Rate [rad/s] below which a mode is a creep and sets no time scale."""
 
 OVERFLOW = 50.0
-"""Exponent beyond which a growing motion is cut off."""
+"""Exponent that a growing motion reaches at most at the end."""
 
 
 class Screening:
@@ -119,6 +120,8 @@ class Screening:
         angle, rate = names.index("yaw_angle"), names.index("yaw_rate")
         x0 = np.array(required.disturbance.start(names))
         cycles = np.linspace(0, required.cycles + 1.5, int(per_cycle * (required.cycles + 1.5)))
+        stride = math.isqrt(cycles.size)  # exp(s t) = exp(s t_far) exp(s t_near): a root of the exponentials is enough
+        far, near = np.arange(-(-cycles.size // stride)) * stride * cycles[1], np.arange(stride) * cycles[1]
         worst = np.zeros(k_psi.size)
         for A in self._matrices(k_psi, c_psi, DECAY_SPEEDS):
             roots, modes = np.linalg.eig(A)
@@ -127,8 +130,10 @@ class Screening:
             slowest = np.where(np.abs(roots.imag) > CREEPING, np.abs(roots.imag), np.inf).min(axis=1)
             alone = np.sqrt(np.maximum(-A[:, rate, angle], CREEPING**2))
             period = 2 * np.pi / np.minimum(slowest, alone)
-            exponent = roots[:, :, None] * (period[:, None] * cycles)[:, None, :]
-            psi = np.einsum("mi,mit->mt", parts, np.exp(np.minimum(exponent.real, OVERFLOW) + 1j * exponent.imag)).real
+            exponent = period[:, None] * roots
+            exponent = np.minimum(exponent.real, OVERFLOW / cycles[-1]) + 1j * exponent.imag  # of one cycle
+            blocks = parts[:, None, :] * np.exp(exponent[:, None, :] * far[:, None])
+            psi = (blocks @ np.exp(exponent[:, :, None] * near)).real.reshape(len(A), -1)[:, : cycles.size]
             passed = np.cumsum(psi[:, 1:] * psi[:, :-1] < 0, axis=1) >= 2 * required.cycles
             later = np.abs(np.where(passed | (cycles[1:] > 2 * required.cycles), psi[:, 1:], 0.0)).max(axis=1)
             worst = np.maximum(worst, later / np.abs(psi[:, : 2 * per_cycle]).max(axis=1))

@@ -11,10 +11,7 @@ import numpy as np
 from ..study.study import Study
 from .modes import ModeTable
 
-__all__ = ["ENOUGH", "Wavelength", "shortest_wavelength"]
-
-ENOUGH = 3.0
-"""Contact lengths per wavelength below which a tyre without memory of its contact line is doubtful."""
+__all__ = ["Wavelength", "shortest_wavelength"]
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,6 @@ def shortest_wavelength(study: Study, tables: Iterable[ModeTable]) -> Wavelength
     Wavelength or None
         None where nothing oscillates.
     """
-    contact = 2 * study.tyre.half_contact_length
     found = []
     for table in tables:
         fastest = np.abs(table.eigenvalues.imag).max(axis=1)
@@ -61,5 +57,11 @@ def shortest_wavelength(study: Study, tables: Iterable[ModeTable]) -> Wavelength
         at = int(lengths.argmin())
         if np.isfinite(lengths[at]):
             length = float(lengths[at])
+            contact = 2 * max(_half_contact_length(study, own) for own in study.wheel_loads(table.load))
             found.append(Wavelength(length, length / contact, float(table.speeds[at]), table.load))
     return min(found, key=lambda wave: wave.length, default=None)
+
+
+def _half_contact_length(study: Study, load: float) -> float:
+    *_, a = study.tyre.linear(load, study.tyre.pressure)
+    return float(a)

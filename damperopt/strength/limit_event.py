@@ -108,7 +108,9 @@ def flight_shares(study: Any, linkage: Linkage, torque: Expr, load: Expr) -> Fli
     load : Expr
         Largest vertical load [N].
     """
-    required, rows = study.requirements, {row.name: row for row in study.loads.table(study, load=load) if not row.off}
+    required = study.requirements
+    # a case that is switched off sizes nothing at its limit load, but the gear turns and is towed all the same
+    rows = {row.name: row for row in study.loads.table(study, load=load) if row.loads is not None}
     spectrum, decay = required.fatigue.spectrum, required.decay
     turning = rows["turning"].limit_torque(required.ultimate_factor) if "turning" in rows else 0.0
     towing = rows["towing"].limit_torque(required.ultimate_factor) if "towing" in rows else turning

@@ -8,10 +8,10 @@ from typing import Any
 
 from ..errors import ConfigError
 from ..gears.base import Gear
-from ..linkages.assembly import assemblies, assembly_type, dampers, layouts
+from ..linkages.assembly import assembly_type, dampers, layouts
 from ..linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS
 from ..load_cases.base import load_cases
-from ..quantities.kinds import home_of, kinds, one_of, tags_of
+from ..quantities.kinds import home_of, kinds, one_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from ..tyres.assembly import contact_lines, slip_laws, tyre_type
@@ -102,9 +102,8 @@ def tag_names() -> tuple[str, ...]:
 
 
 def optimisable() -> tuple[str, ...]:
-    """Layouts that have design variables; the others can be analysed, and simulated."""
-    with_variables = (kind.LAYOUT for kind in assemblies().values() if kind.VARIABLES)
-    return tuple(dict.fromkeys(tags_of(layout, "topology")[0] for layout in with_variables))
+    """Layouts that have design variables with every damper; others are optimised with a damper that has some."""
+    return tuple(topology for topology, layout in layouts().items() if layout.VARIABLES)
 
 
 @cache

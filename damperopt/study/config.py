@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
+import logging
 import types
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
@@ -13,12 +15,15 @@ from pydantic import BaseModel, ValidationError
 from ..errors import ConfigError
 from ..quantities.record import quantity_of
 from ..reading import printable, quoted, text_of
+from ..tyres.property_file import block_of_file
 from . import schema
 from .components import gears
 from .document import dotted, few, read
 from .study import Study
 
-__all__ = ["is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
+__all__ = ["files_of", "is_sweep", "json_schema", "load", "loads", "parsed", "text_of"]
+
+logger = logging.getLogger("damperopt")
 
 Record = TypeVar("Record", bound=BaseModel)
 
@@ -65,6 +70,13 @@ def loads(text: str, name: str = "<text>") -> Study:
     return parsed(text, name, Study)[0]
 
 
+def files_of(path: str | Path) -> list[str]:
+    """Files that a study names and that are read with it, as it names them."""
+    tyre = read(text_of(path), str(path), "the keys of a study").data.get("tyre")
+    named = tyre.get("file") if isinstance(tyre, dict) else None
+    return [named] if isinstance(named, str) else []
+
+
 def is_sweep(text: str, name: str) -> bool:
     """Whether a text describes a sweep: a base that is varied."""
     return _describes_a_sweep(read(text, name, "the keys of a study, or of a sweep").data)
@@ -107,12 +119,25 @@ def parsed(text: str, name: str, model: type[Record]) -> tuple[Record, dict[tupl
             f"{name}:{lines[path]}: {dotted(path)}: found nothing; allowed: {_allowed_at(path, model)}; or leave the key out"
             for path in document.empty
         ])  # fmt: skip
+    if model is Study:
+        data = _with_files(data, lines, name)
     try:
         return model.model_validate(data, context={"folder": Path(name).parent}), lines
     except ValidationError as error:
         found = _without_other_branches(error.errors(include_url=False))
         problems = [_message(problem, data, lines, name, model) for problem in found]
         raise ConfigError(few([text for _, text in sorted(set(problems))])) from None
+
+
+def _with_files(data: dict[str, Any], lines: Mapping[tuple, int], name: str) -> dict[str, Any]:
+    """The data of a study with what the files hold that it names, beside it."""
+    tyre = data.get("tyre")
+    if not (isinstance(tyre, dict) and "file" in tyre):
+        return data
+    block, found = block_of_file(tyre, Path(name).parent, f"{name}:{lines['tyre', 'file']}: tyre.file")
+    if found.newer:
+        logger.warning("%s: %s: %s", printable(found.name), found.kind, "; ".join(found.notes))
+    return data | {"tyre": block}
 
 
 def _without_other_branches(problems: Sequence[Any]) -> list[Any]:
@@ -142,7 +167,21 @@ def json_schema() -> dict[str, Any]:
             }
             block["required"].remove("kind")
             block["anyOf"] = [{"required": ["kind"]}, {"required": ["order"]}]
+    _tyres_without_law(found)
     return found
+
+
+def _tyres_without_law(found: dict[str, Any]) -> None:
+    """A size, or a property file, says what law a tyre has."""
+    blocks = found["$defs"]
+    blocks["TR_R64LawTyre"]["required"].remove("law")
+    of_file = copy.deepcopy(blocks["MagicFormulaLawTyre"])
+    del of_file["properties"]["coefficients"], of_file["properties"]["source"]
+    words = "Property file (.tir) of the tyre, beside the study: Magic Formula, or Fiala and UA."
+    of_file["properties"] |= {"file": {"type": "string", "description": words}, "law": {"type": "string", "description": words}}
+    of_file |= {"title": "TyreOfFile", "description": words, "required": ["file", "half_contact_length"]}
+    blocks["TyreOfFile"] = of_file
+    found["properties"]["tyre"]["oneOf"].append({"$ref": "#/$defs/TyreOfFile"})
 
 
 def _message(problem: Any, data: Any, lines: dict[tuple, int], name: str, model: type[BaseModel]) -> tuple[int, str]:

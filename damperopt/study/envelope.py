@@ -56,6 +56,13 @@ class Envelope(Record):
         load = self.vertical_load
         return (load.min, load.max) if isinstance(load, LoadRange) else tuple(load)
 
+    def samples(self, count: int) -> tuple[float, ...]:
+        """The list of loads, or so many of the range, its ends included [N]."""
+        if not self.load_is_range:
+            return self.loads
+        low, high = self.loads
+        return tuple(low + (high - low) * i / (count - 1) for i in range(count))
+
     @property
     def load_is_range(self) -> bool:
         return isinstance(self.vertical_load, LoadRange)

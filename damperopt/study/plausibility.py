@@ -201,8 +201,12 @@ def implausible_masses(parts: Mapping[str, float]) -> list[Implausible]:
 
 def _of_tyre(study: Study) -> Iterator[Implausible]:
     tyre, radius = study.tyre, study.gear.wheel_radius
-    at_loads = [(load, *map(float, tyre.linear(load, tyre.pressure))) for load in study.envelope.loads]
+    on_wheels = sorted({own for load in study.envelope.loads for own in study.wheel_loads(load)})
+    numbers = ((load, *tyre.linear(load, tyre.pressure)) for load in on_wheels)
+    at_loads = [[math.nan if x is None else float(x) for x in row] for row in numbers]  # a line may do without sigma
     seen: set[tuple[float, ...]] = set()
+    if own := tyre.radius():
+        yield Implausible("gear.wheel_radius", "the radius of the wheel", radius, "m", (0.8 * own, 1.02 * own))
     for load, side, moment, sigma, a in at_loads:
         data = tuple(round(value, 9) for value in (side / load, moment / load, sigma, a))
         if data in seen:  # the same at every load
@@ -212,7 +216,8 @@ def _of_tyre(study: Study) -> Iterator[Implausible]:
         yield Implausible("tyre", f"the slope of the side force, per radian and load, {where}", side / load, "1", (1.0, 30.0))
         if side:
             yield Implausible("tyre", f"the pneumatic trail {where}", moment / side, "m", (0.0, 2 * a))
-        yield Implausible("tyre.relaxation_length", f"the relaxation length {where}", sigma, "m", (0.5 * a, 10 * a))
+        if tyre.contact.RELAXES:
+            yield Implausible("tyre.relaxation_length", f"the relaxation length {where}", sigma, "m", (0.5 * a, 10 * a))
         yield Implausible("tyre.half_contact_length", f"the half contact length {where}", a, "m", (0.05 * radius, radius))
 
 
@@ -240,6 +245,8 @@ def _of_frequencies(study: Study, design: Mapping[str, float] | None) -> Iterato
     if design is None and study.variables:
         return
     stiffness = study.damper.linkage(dict(design or {}), study.material.youngs_modulus).torsional_stiffness
+    if not float(stiffness):  # free castering
+        return
     frequency = math.sqrt(max(float(stiffness), 0.0) / gear.yaw_inertia) / (2 * math.pi)
     yield Implausible(
         "gear.yaw_inertia", "the frequency of yaw against the stiffness of the damper, without the tyre", frequency, "Hz", usual

@@ -25,8 +25,10 @@ def covers(study: Study) -> list[str]:
     linkage = "" if damper.ROTARY else f", {_chain(damper)}"
     found = [
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
-        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}."
+        f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
+    if words := study.tyre.origin():
+        found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
     if names := [name for name, value in left if value is not None]:
         found.append(
@@ -53,6 +55,10 @@ def _chain(damper: Any) -> str:
     return "; ".join(found + ([f"rigid: {', '.join(rigid)}"] if rigid else []))
 
 
+def _delay(study: Study) -> str:
+    return "" if study.tyre.contact.RATIONAL else ", with its exact delay"
+
+
 def leaves_out(study: Study) -> tuple[str, ...]:
     """What eigenvalues and certificate of a study do not speak of, as its components say it.
 
@@ -65,4 +71,5 @@ def leaves_out(study: Study) -> tuple[str, ...]:
     tuple of str
         A phrase for each; it says where the study has a number for it that only `simulate` uses.
     """
-    return (*study.damper.leaves_out(), *study.tyre.contact.leaves_out(), *study.gear.leaves_out())
+    parts = (study.damper, study.tyre, study.tyre.contact, study.gear)
+    return tuple(words for part in parts for words in part.leaves_out())

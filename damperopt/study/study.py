@@ -32,6 +32,9 @@ from .variables import Design, Variable
 
 __all__ = ["Study", "unit_of"]
 
+LOADS = 17
+"""Of a range of loads, at which the tyre is asked whether it has data."""
+
 
 class Study(Record):
     """One design study: everything `optimise` and `analyse` need."""
@@ -71,6 +74,10 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        for load in self.envelope.samples(LOADS):
+            if words := self.beyond_tyre(load):
+                allowed = "loads that the tyre has data for"
+                raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
@@ -86,6 +93,15 @@ class Study(Record):
                     f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def wheel_loads(self, load: float) -> tuple[float, ...]:
+        """Loads on the wheels [N] at a load on the gear [N]."""
+        at_rest = {state.name: 0.0 for state in self.gear.states()}
+        return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
+
+    def beyond_tyre(self, load: float) -> str:
+        """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
+        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:
@@ -152,11 +168,25 @@ class Study(Record):
         topology = changes.get("damper__topology")
         if "damper__kind" not in changes and topology and f"{topology} {data['damper']['kind']}" not in assemblies():
             data["damper"].pop("kind")  # it does not go with the new layout, which has a kind of its own
+        if topology:
+            data["damper"] = _in_layout(data["damper"], topology)
         data = changed(data, {path.replace("__", "."): value for path, value in changes.items()})
         try:
             return Study.model_validate(data)
         except ValidationError as error:
             raise ConfigError([_problem_in_words(problem) for problem in error.errors(include_url=False)]) from None
+
+
+def _in_layout(block: dict[str, Any], topology: str) -> dict[str, Any]:
+    """A block `damper` without the blocks of words alone, such as the form of a part, that another layout does not know."""
+    known = {key for name, made in assemblies().items() if name.split()[0] == topology for key in made.model_fields}
+    if not known:
+        return block
+
+    def of_words(value: Any) -> bool:
+        return isinstance(value, dict) and all(isinstance(inner, str) for inner in value.values())
+
+    return {key: value for key, value in block.items() if key in known or not of_words(value)}
 
 
 def _problem_in_words(problem: Any) -> str:

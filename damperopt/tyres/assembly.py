@@ -5,12 +5,14 @@ from __future__ import annotations
 import types
 import warnings
 from functools import cache
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
+
+from pydantic.fields import FieldInfo
 
 from ..errors import ConfigError
 from ..quantities.kinds import home_of, kinds, one_of, tags_of, union_of
 from ..quantities.record import refuse
-from .base import ContactLine, SlipLaw, Tyre
+from .base import AtLoad, ContactLine, SlipLaw, Tyre
 
 __all__ = ["contact_lines", "slip_laws", "tyre_type"]
 
@@ -35,18 +37,26 @@ def tyre(law: type[SlipLaw]) -> type[Any]:
     if twice:
         raise ConfigError(f"{home_of(law)} declares '{twice[0]}', which every tyre has; allowed: other names")
     lines: Any = one_of("tyres.contact", ContactLine, "contact", _contact_block, short=True)
+    given = {key: _or_none(Tyre.model_fields[key]) for key in law.GIVES}
     facts = {
         "LAW": law,
         "__doc__": law.__doc__,
         "__module__": __name__,
-        "__annotations__": {"LAW": ClassVar[Any], "contact": lines},
+        "__annotations__": {"LAW": ClassVar[Any], "contact": lines, **given},
         "contact": contact_lines()[DEFAULT_CONTACT](contact=DEFAULT_CONTACT),
+        **dict.fromkeys(given),
     }
     name = f"{law.__name__}Tyre"
     name = name if name not in globals() else f"{name}_{tags_of(law, 'law')[0]}"  # of a plug-in whose class is called the same
-    made = types.new_class(name, (law, Tyre), {}, lambda namespace: namespace.update(facts))
+    made = types.new_class(name, (AtLoad, law, Tyre), {}, lambda namespace: namespace.update(facts))
     globals().setdefault(name, made)  # where pickle looks for it
     return made
+
+
+def _or_none(field: FieldInfo) -> Any:
+    """The type of a field that may be left out as well."""
+    given: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
+    return given | None
 
 
 def tyre_type() -> Any:
@@ -67,4 +77,4 @@ def _law_block(block: dict[str, Any]) -> dict[str, Any]:
             "tyre.law 'straight_tangent' is now 'stiffness', with any contact line; the old name goes with the next version"
         )
         warnings.warn(message, FutureWarning, stacklevel=2)
-    return block
+    return {"law": "tr_r64", **block} if "size" in block else block  # a size says what it is

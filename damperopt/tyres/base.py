@@ -9,17 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import model_validator
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.sizing import Peaks
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Length, Pressure, Record
+from ..quantities.record import Pressure, Record, refuse
 from ..quantities.units import Quantity
+from .over_load import LengthOverLoad, OverLoad
 
-__all__ = ["ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
+__all__ = ["AtLoad", "ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,10 @@ class SlipLaw(Record):
     """Powers of F_z in the linear model; None: no polynomial in F_z, so that proofs go load by load."""
     ODD: ClassVar[bool] = True
     """Whether force and moment change sign with the slip."""
+    GIVES: ClassVar[tuple[str, ...]] = ()
+    """Keys of `Tyre` that the law knows by itself, as functions of load and pressure: a study may leave them out (None)."""
+    TABLE: ClassVar[tuple[Output, ...]] = ()
+    """What else the law knows of the tyre at a load, for a table: names, units, meanings of `others`."""
 
     law: str
 
@@ -104,6 +111,30 @@ class SlipLaw(Record):
         """Largest force and moment at a load; None where the law has no peak, and a limit torque must be given."""
         return None
 
+    def others(self, load: float, pressure: float | None) -> dict[str, float]:
+        """Values of `TABLE` at a load [N] and a pressure [Pa], by name [SI]."""
+        return {}
+
+    def beyond(self, load: float, pressure: float | None) -> str:
+        """Why the law has no answer at a load of the wheel [N], in words; empty where it has one."""
+        return ""
+
+    def loads(self) -> tuple[float, float] | None:
+        """Loads for which its numbers are made [N], for tables; None where the numbers do not say."""
+        return None
+
+    def radius(self) -> float | None:
+        """Radius of the tyre without load [m], where its numbers hold it."""
+        return None
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What this law does not hold, in words."""
+        return ()
+
+    def origin(self) -> str:
+        """Where its numbers come from if not from the study, and how far they hold: a sentence, or nothing."""
+        return ""
+
 
 class ContactLine(Record):
     """How the string of a tyre meets the ground.
@@ -116,8 +147,12 @@ class ContactLine(Record):
     """States of the line, of one wheel."""
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0, 1)
     """Powers of V in the linear model."""
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+    """Powers of F_z that it brings in beside those of the law; None: no polynomial in F_z."""
     RATIONAL: ClassVar[bool] = True
     """Whether its transfer functions are rational, so that states stand for all of it."""
+    RELAXES: ClassVar[bool] = True
+    """Whether it needs `relaxation_length`; a line that has another number for it says no."""
 
     contact: str
 
@@ -143,13 +178,85 @@ class ContactLine(Record):
         """
         raise NotImplementedError  # every line says it
 
-    def response(self, s: Expr, linear: Linear) -> tuple[Expr, Expr, Expr, Expr]:
-        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m]."""
+    def response(self, s: Expr, linear: Linear, speed: Expr = 1.0) -> tuple[Expr, Expr, Expr, Expr]:
+        """Transfer functions of path, F/theta, F/eta, M/theta, M/eta, at the path frequency s = lambda/V [1/m].
+
+        The speed V [m/s] counts for lines with a clock of their own alone.
+        """
         raise NotImplementedError  # every line says it
+
+    def realisation(self, purpose: str) -> ContactLine:
+        """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
+        return self
+
+    def least_wave(self) -> float:
+        """Contact lengths per wavelength of the motion below which this line is doubtful."""
+        return 3.0
 
     def leaves_out(self) -> tuple[str, ...]:
         """What this line does not hold, in words."""
         return ()
+
+
+class AtLoad(Record):
+    """Stands before a slip law, whose equations then see a key that is a table over load as its value at that load."""
+
+    def at(self, load: Expr) -> Self:
+        """The tyre with every table at a load [N]; itself where it has none."""
+        found = {key: table.at(load) for key, table in self._tables().items()}
+        return self.model_copy(update=found) if found else self
+
+    def _tables(self) -> dict[str, OverLoad]:
+        values = ((key, getattr(self, key)) for key in type(self).model_fields)
+        return {key: value for key, value in values if isinstance(value, OverLoad)}
+
+    @property
+    def LOAD_POWERS(self) -> tuple[int, ...] | None:
+        """Powers of F_z in the linear model: those of the law; a table is no polynomial."""
+        law: Any = super()
+        return None if self._tables() else law.LOAD_POWERS
+
+    def linear(self, load: Expr, pressure: Expr) -> Any:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.linear(load, pressure)
+
+    def force(self, alpha_F: Expr, load: Expr, pressure: Expr) -> Expr:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.force(alpha_F, load, pressure)
+
+    def moment(self, alpha_M: Expr, load: Expr, pressure: Expr, corners: Corners) -> Expr:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return law.moment(alpha_M, load, pressure, corners)
+
+    def peaks(self, load: Expr, pressure: Expr) -> Peaks | None:
+        """As that of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        found: Peaks | None = law.peaks(load, pressure)
+        return found
+
+    def others(self, load: float, pressure: float | None) -> dict[str, float]:
+        """As those of the law."""
+        law: Any = super(AtLoad, self.at(load))
+        return dict(law.others(load, pressure))
+
+    def loads(self) -> tuple[float, float] | None:
+        """As those of the law, within the tables."""
+        law: Any = super()
+        ends = [law.loads(), *((table.load[0], table.load[-1]) for table in self._tables().values())]
+        given = [pair for pair in ends if pair is not None]
+        return (max(low for low, _ in given), min(high for _, high in given)) if given else None
+
+    def beyond(self, load: float, pressure: float | None) -> str:
+        """As that of the law; a table ends with its last point."""
+        for key, table in self._tables().items():
+            if not table.load[0] <= load <= table.load[-1]:
+                ends = f"{table.load[0] / 1e3:g} to {table.load[-1] / 1e3:g} kN"
+                return f"is beyond the table of tyre.{key}, {ends}"
+        law: Any = super(AtLoad, self.at(load))
+        return str(law.beyond(load, pressure))
 
 
 class Tyre(Record):
@@ -161,10 +268,11 @@ class Tyre(Record):
         Output("aligning_moment", "N m", "that of the tread width left out"),
     )
 
-    half_contact_length: Length
-    """a, half the length of the footprint [m]."""
-    relaxation_length: Length
-    """sigma, decay length of the string's deflection before the footprint [m]."""
+    half_contact_length: LengthOverLoad
+    """a, half the length of the footprint [m]; a number, or a table over load."""
+    relaxation_length: LengthOverLoad | None = None
+    """sigma, decay length of the string's deflection before the footprint [m]; a number, or a table over load; needed by all
+    contact lines but ``moreland``."""
     tread_width_moment: Annotated[float, Quantity("N m^2/rad", at_least=0, example="570 N m^2/rad")] = 0.0
     """kappa, moment against the swivel rate of a footprint with a width, kappa theta'/V [N m^2/rad]."""
     slip_range: Annotated[float, Quantity("rad", above=0, below=1.5, example="45 deg")] = 0.7853981633974483
@@ -172,6 +280,19 @@ class Tyre(Record):
     pressure: Pressure | None = None
     """Of inflation [Pa]; needed by laws that depend on it."""
     contact: ContactLine
+    """How the string meets the ground: the name of a contact line, or ``{kind: name, ...}`` with keys of its own."""
+
+    @model_validator(mode="after")
+    def _relaxes(self) -> Self:
+        given, law = self.relaxation_length is not None, getattr(self, "LAW", None)
+        if not given and law is not None and "relaxation_length" in law.GIVES:
+            return self
+        if self.contact.RELAXES and not given:
+            raise refuse("relaxation_length", "missing key", "a length such as '0.3 m'")
+        if given and not self.contact.RELAXES:
+            words = f"contact {self.contact.contact} has a stiffness in its place"
+            raise refuse("relaxation_length", words, "no such key, or another contact line")
+        return self
 
     @property
     def states(self) -> tuple[State, ...]:

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import standard
+from scipy.integrate import solve_ivp
 from standard import least
 from whole import goes_through_the_commands, is_optimised, is_reported
 
@@ -37,7 +38,10 @@ def damper_blocks():
             yield pytest.param(home | compliance | block, id=" ".join(filter(None, (tag, chain, "full" * i))))
 
 
-@pytest.fixture(scope="module", params=damper_blocks())
+BLOCKS = list(damper_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(damper=request.param)
 
@@ -98,6 +102,44 @@ def test_damping_is_the_slope_of_the_force(study, at_rest):
     assert sum(forces) == pytest.approx(0, abs=1e-9 * abs(forces[1])), "a force at rest"
 
 
+@pytest.mark.parametrize(("amplitude", "frequency"), [(1e-3, 70.0), (5e-3, 40.0)])
+def test_equivalent_has_the_first_harmonic(study, amplitude, frequency):
+    """Against the force along a sinusoidal stroke, integrated until it repeats itself."""
+    damper, context = study.damper, Context(4e4, 30.0)
+    expected = damper.equivalent(study.start, amplitude, frequency, context)
+    if expected is None:
+        return
+    names, corners = [state.name for state in damper.STATES], standard.Narrow(1e-9)
+
+    def force(t, x):
+        stroke, rate = amplitude * np.sin(frequency * t), amplitude * frequency * np.cos(frequency * t)
+        return damper.force(study.start, dict(zip(names, x, strict=True)), stroke, rate, context, corners)
+
+    period, x = 2 * np.pi / frequency, np.zeros(len(names))
+    times = period * (np.arange(4000) + 0.5) / 4000
+    if names:
+        step = {"max_step": period / 200, "rtol": 1e-9, "atol": 1e-12}
+
+        def rates(t, x):
+            return list(force(t, x).rates.values())
+
+        for _ in range(60):
+            end = solve_ivp(rates, (0, period), x, **step).y[:, -1]
+            if np.abs(end - x).max() <= 1e-9 * np.abs(end).max():
+                break
+            x = end
+        motion = solve_ivp(rates, (0, period), x, t_eval=times, **step).y
+    else:
+        motion = np.zeros((0, times.size))
+    forces = np.array([force(t, motion[:, i]).force for i, t in enumerate(times)])
+    stiffness = 2 * np.mean(forces * np.sin(frequency * times)) / amplitude
+    damping = 2 * np.mean(forces * np.cos(frequency * times)) / (amplitude * frequency)
+    # a corner that is met between two of 4000 points of a cycle, and rounded ones
+    size = np.hypot(stiffness, frequency * damping)
+    assert expected[0] == pytest.approx(stiffness, abs=1e-3 * size)
+    assert expected[1] * frequency == pytest.approx(damping * frequency, abs=1e-3 * size)
+
+
 def test_parts_weigh(study):
     """Masses are positive and grow with the loads of the limit event; sizes start between their bounds."""
     if not study.variables:
@@ -134,6 +176,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(damper_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

@@ -19,7 +19,10 @@ def gear_blocks():
             yield pytest.param(block, id=f"{tag}{' full' * i}")
 
 
-@pytest.fixture(scope="module", params=gear_blocks())
+BLOCKS = list(gear_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(gear=request.param)
 
@@ -34,14 +37,14 @@ def test_equations(study):
 
 def test_yaw_is_among_the_states(study):
     """Tables, figures and requirements are of the yaw angle; a state and its twin name each other."""
-    states = {state.name: state for state in study.gear.STATES}
+    states = {state.name: state for state in study.gear.states()}
     assert states["yaw_angle"].twin == "yaw_rate"
     for state in states.values():
         assert state.twin is None or states[state.twin].twin == state.name
 
 
 def test_gear_in_floats_is_its_graph(study):
-    gear, tyre, names = study.gear, study.tyre, [state.name for state in study.gear.STATES]
+    gear, tyre, names = study.gear, study.tyre, [state.name for state in study.gear.states()]
 
     def motion(speed, load, torque, yaw_torque, y, *values):
         x = dict(zip(names, values, strict=True))
@@ -60,9 +63,9 @@ def test_gear_in_floats_is_its_graph(study):
 
 def test_wheels_move_as_their_rates_say(study):
     """swivel_rate and lateral_rate are the derivatives of swivel and lateral along a motion, and the load is all carried."""
-    gear, names, h = study.gear, [state.name for state in study.gear.STATES], 1e-6
+    gear, names, h = study.gear, [state.name for state in study.gear.states()], 1e-6
     x = dict(zip(names, np.random.default_rng(2).uniform(-0.05, 0.05, len(names)), strict=True))
-    rates = {s.name: x[s.twin] if s.twin and s.name.endswith("_angle") else 0.0 for s in gear.STATES}
+    rates = {s.name: x[s.twin] if s.twin and not s.name.endswith("_rate") else 0.0 for s in gear.states()}
     before, now, after = (gear.wheels({n: x[n] + k * h * rates[n] for n in names}, 30.0, 4e4) for k in (-1, 0, 1))
     for early, wheel, late in zip(before, now, after, strict=True):
         # central differences at 1e-6 s of angles of a twentieth of a radian: rounding 1e-11
@@ -84,6 +87,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(gear_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

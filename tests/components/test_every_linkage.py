@@ -55,7 +55,10 @@ def _usual(made):
     return tag == made.LAYOUT.DAMPER
 
 
-@pytest.fixture(scope="module", params=layout_blocks())
+BLOCKS = list(layout_blocks())
+
+
+@pytest.fixture(scope="module", params=BLOCKS)
 def study(request):
     return standard.study_of(damper=request.param)
 
@@ -264,6 +267,6 @@ def test_is_optimised(study, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", least(layout_blocks()), indirect=True)
+@pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

@@ -17,7 +17,6 @@ from damperopt.output import write_report
 from damperopt.output.gallery import Answer, figures_of, write_design
 from damperopt.output.tables import write_chart, write_modes
 from damperopt.results import DesignResult
-from damperopt.study.components import optimisable
 
 
 def goes_through_the_commands(study: Study, folder: Path) -> None:
@@ -28,7 +27,7 @@ def goes_through_the_commands(study: Study, folder: Path) -> None:
     low, high, load = study.envelope.speed.min, study.envelope.speed.max, study.envelope.loads[0]
     gear = damperopt.linear_gear(study)
     modes = damperopt.track_modes(gear, np.linspace(low, high, 12), load)
-    assert len(modes.names) == len(gear.states)  # a conjugate pair has one name
+    assert len(modes.names) >= len(gear.principal)  # a conjugate pair has one name
     write_modes(folder / "modes.csv", [modes])
     worst = damperopt.worst_points(gear, study.envelope)[0]
     speeds = np.linspace(low, high, 200)
@@ -54,7 +53,7 @@ def goes_through_the_commands(study: Study, folder: Path) -> None:
 
 def is_optimised(study: Study, folder: Path) -> DesignResult | None:
     """A design or a reason why there is none; with a design, its proof and its files."""
-    if study.damper.topology not in optimisable():
+    if not study.variables:
         with pytest.raises(damperopt.ConfigError):
             damperopt.optimise(study)
         return None

@@ -27,7 +27,12 @@ BROKEN = {
     "duplicate key": ("name: main gear", "name: a\nname: b", "name", "duplicate key, first on line"),
     "choice": ("topology: arreaza", "topology: citroen", "damper.topology", "allowed: arreaza, boeing, rotational, utas"),
     "order": ("order: 5 ", "order: 4 ", "gear.order", "3 or 5"),
-    "tyre law": ("law: arctangent", "law: magic", "tyre.law", "allowed: arctangent, brush, linear, stiffness"),
+    "tyre law": (
+        "law: arctangent",
+        "law: magic",
+        "tyre.law",
+        "allowed: arctangent, brush, linear, magic_formula, stiffness, tr_r64",
+    ),
     "boolean": ("150 kN", "true", "envelope.vertical_load", "found True"),
     "nothing": ("0.12 m ", "~ ", "gear.caster_length", "found nothing"),
     "list for a number": ("0.12 m ", "[0.12] ", "gear.caster_length", "found a list"),

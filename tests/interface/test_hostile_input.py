@@ -58,10 +58,10 @@ NO_LENGTHS = {
 
 
 def problems_of(text):
-    start = time.perf_counter()
+    start = time.process_time()  # however busy the machine
     with pytest.raises(damperopt.ConfigError) as error:
         damperopt.loads(text, "study.yaml")
-    assert time.perf_counter() - start < 5
+    assert time.process_time() - start < 5
     for problem in error.value.problems:
         assert problem.isprintable()
         assert len(problem) < 1000

@@ -15,7 +15,6 @@ from scipy.integrate import solve_ivp
 from tolerances import COMMANDED_MOTION, COMMANDED_PEAK, PRINTED_ROW
 
 import damperopt
-from damperopt import cli
 
 FILES = {"trajectory.csv", "motion.json", "trajectory.png", "trajectory.svg"}
 QUESTION = ("--speed", "40", "--release", "yaw=1deg", "--duration", "1")
@@ -31,22 +30,6 @@ def read(folder):
     columns = {name.split(" ")[0]: column for name, column in zip(header, rows.T, strict=True)}
     motion = json.loads((folder / "motion.json").read_text(encoding="utf-8"))
     return SimpleNamespace(header=header, columns=columns, motion=motion)
-
-
-@pytest.fixture
-def call(monkeypatch, capsys, tmp_path):
-    """The command in this process and without compilation, in an empty folder: exit code and what it prints."""
-    monkeypatch.setattr("damperopt.motion.integrators.has_compiler", lambda: False)
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["damperopt", *map(str, arguments)])
-        with pytest.raises(SystemExit) as end:
-            cli.main()
-        said = capsys.readouterr()
-        return SimpleNamespace(code=end.value.code or 0, out=said.out, err=said.err)
-
-    return run
 
 
 @pytest.fixture
@@ -284,7 +267,7 @@ def test_design_of_a_result_is_simulated(name, call, configs, tmp_path, optimum)
 
 def test_design_brings_its_layout(call, configs, tmp_path, optimum):
     """A Boeing design on a study of another layout is simulated as Boeing: k_lambda, not I_arm."""
-    done = call("simulate", configs / "thesis_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
+    done = call("simulate", configs / "main_gear.yaml", *QUESTION, "--design", optimum.folder, "-o", "out")
     assert done.code == 0, done.err
     found = read(tmp_path / "out")
     assert found.motion["design"] == optimum.result.design
@@ -420,6 +403,7 @@ def test_a_motion_that_stops_at_once_is_an_answer(main_gear):
     assert (found.kind, found.cycles, found.decay_ratio) == ("diverging", 0.0, None)
 
 
+@pytest.mark.slow
 def test_exact_engine_shows_every_cycle_of_a_long_motion(main_gear):
     """20 s at 50 Hz: as many cycles as the smooth engine counts, not 2000 points' worth."""
     study, release = main_gear.replace(gear__order=3), {"release": {"yaw_angle": 1e-3}}

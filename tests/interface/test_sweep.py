@@ -99,6 +99,7 @@ def test_finished_points_are_taken_as_they_are_and_others_are_not(nose, tmp_path
     assert not stored_records(sweep_of(nose, **ANALYSIS, eigenvalue_speeds=9), tmp_path)
 
 
+@pytest.mark.slow
 def test_optimised_points_are_those_of_optimise_and_start_from_their_neighbours(main_gear, tmp_path):
     base = main_gear.replace(damper__topology="boeing", solver__starts=4)
     sweep = sweep_of(base, vary={"requirements.stability_margin": [0.1, 0.15]})

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from components_of import tyre_of
 from scipy.integrate import quad
 
 from damperopt.expressions.corners import Linear
@@ -90,3 +91,18 @@ def test_friction_that_falls(brush):
 
 def test_pneumatic_trail_at_zero_slip_is_a_third_of_the_half_length(brush):
     assert brush.moment(1e-7, LOAD, None, Linear()) / brush.force(1e-7, LOAD, None) == pytest.approx(0.1 / 3, rel=1e-6)
+
+
+@pytest.mark.parametrize("alpha", [0.02, -0.2, 0.5, 0.75])
+def test_law_of_gim_and_nikravesh_is_the_same_function(brush, alpha):
+    """UA at zero camber: C_a S l^2 + mu F_z (1 - 3 l^2 + 2 l^3), l = 1 - S/S*, S* = 3 mu F_z/C_a, S = |tan(alpha)|."""
+    slip, grip = abs(math.tan(alpha)), 0.8 * LOAD
+    sticks = max(0.0, 1 - slip * 440e3 / (3 * grip))
+    force = 440e3 * slip * sticks**2 + grip * (1 - 3 * sticks**2 + 2 * sticks**3)
+    assert brush.force(alpha, LOAD, None) == pytest.approx(math.copysign(force, alpha), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["fiala", "ua", "brush"])
+def test_law_has_the_names_of_both(brush, name):
+    block = {"half_contact_length": 0.1, "relaxation_length": 0.3, "cornering_stiffness": 440e3, "friction": 0.8}
+    assert tyre_of(law=name, **block) == brush

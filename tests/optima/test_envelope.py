@@ -58,7 +58,7 @@ def test_margin_that_no_damper_reaches_is_named_with_speed_and_shortfall(main_ge
 
 
 def test_each_relaxation_that_is_said_to_be_enough_is_enough(main_gear):
-    study = main_gear.replace(requirements__tyre_clearance=0.25, **FEW)
+    study = main_gear.replace(damper__topology="boeing", requirements__tyre_clearance=0.25, solver__starts=1)
     result = damperopt.optimise(study)
     assert result.status == "infeasible"
     enough = {r.name: r for r in result.infeasibility.alone_enough}

@@ -15,6 +15,7 @@ def test_a_limit_that_nothing_comes_near_is_as_good_as_none(main_gear, topology)
     assert far.mass.total == pytest.approx(near.mass.total, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_no_design_with_a_simulated_limit_event_is_infeasible_and_says_why(main_gear_with_decay):
     """The event takes its peaks from the motions of the decay requirement, which the diagnosis takes away first."""
     study = main_gear_with_decay.replace(

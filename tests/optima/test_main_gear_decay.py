@@ -135,7 +135,7 @@ def test_spatial_boeing_decays(main_gear_with_decay):
 def test_simulated_peaks_size_the_parts(main_gear_with_decay):
     """A kick of 0.5 rad/s instead of the limit torque: 2.593 kg; the peaks are those of the exact simulation."""
     kick = {"requirements__limit_event": "simulated", "requirements__decay__kick": {"yaw_rate": 0.5}}
-    result = optimise(main_gear_with_decay.replace(**kick, requirements__decay__release=None, solver__starts=4))
+    result = optimise(main_gear_with_decay.replace(**kick, requirements__decay__release=None, solver__starts=2))
     assert result.status == "solved"
     assert f"{result.mass.total:.3f}" == "2.593"
     study = main_gear_with_decay

@@ -13,7 +13,7 @@ from damperopt.optimum.problem import DesignProblem
 pytestmark = pytest.mark.slow
 
 MARGIN = 0.1
-SPEEDS = np.geomspace(5, 100, 600)
+SPEEDS = np.geomspace(5, 100, 250)
 BETTER = 1e-3  # a mass that another method beats by 0.1 % is a failure
 
 
@@ -74,11 +74,11 @@ def test_optimum_found_along_the_border_of_the_stable_region(topology, main_gear
         found = [cheapest_layout(problem, k_psi, c_psi, start) for c_psi in least_dampings(k_psi)]
         return min(found, key=lambda f: f[0], default=(np.inf, start))
 
-    stiffnesses = np.geomspace(2e5, 4e6, 48)
+    stiffnesses = np.geomspace(2e5, 4e6, 24)
     start = np.array([0.55, 0.7 if topology == "boeing" else 0.55, 0.15])
     masses = [best_at(k, start)[0] for k in stiffnesses]
     k_best = stiffnesses[int(np.argmin(masses))]
-    for width in (1.06, 1.02, 1.006, 1.002):
+    for width in (1.13, 1.04, 1.01, 1.003):
         around = k_best * np.geomspace(1 / width, width, 9)
         masses = [best_at(k, start)[0] for k in around]
         k_best = around[int(np.argmin(masses))]

@@ -21,8 +21,6 @@ DECLARED = {
     "collar": {"collar_angle", "collar_rate", "steering_torque"},
 }
 
-pytestmark = pytest.mark.xdist_group("plugins")
-
 
 def study(name):
     return str(HERE / "studies" / f"{name}.yaml")

@@ -16,6 +16,7 @@ from damperopt.charts.explicit import joint_of
 from damperopt.charts.plane import Axis, Plane
 from damperopt.charts.tracing import trace
 from damperopt.errors import ConfigError
+from damperopt.stability.linear import LinearModel
 
 PLANES = [
     (("damper.torsional_damping", 0.0, 5e3), ("damper.torsional_stiffness", 0.0, 1e6)),
@@ -92,7 +93,7 @@ JOINTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("margin", [0.0, 0.2])
+@pytest.mark.parametrize("margin", [pytest.param(0.0, marks=pytest.mark.slow), 0.2])
 @pytest.mark.parametrize("speed", [12.0, 40.0, 90.0])
 @pytest.mark.parametrize("joint", JOINTS, ids=["rotational", "boeing", "utas in space", "new in space", "strut, six states"])
 def test_quantities_at_one_joint_have_explicit_curves_which_are_the_traced_ones(main_gear, joint, speed, margin):
@@ -185,7 +186,8 @@ def test_every_layout_and_geometry_has_a_chart(main_gear, topology, geometry):
     found = damperopt.chart(study, ("c_lambda", 0.0, 2e5), ("L", 0.3, 1.2), speed=40.0)
     rng = np.random.default_rng(1)
     x, y = 2e5 * rng.random(300), 0.3 + 0.9 * rng.random(300)
-    gears = [damperopt.linear_gear(study, {**study.start, "c_lambda": c, "L": length}) for c, length in zip(x, y, strict=True)]
+    model = LinearModel(study)
+    gears = [model.at({**study.start, "c_lambda": c, "L": length}) for c, length in zip(x, y, strict=True)]
     expected = np.array([gear.abscissa(40.0, 150e3)[0] < 0 for gear in gears])
     assert (found.stable(x, y) == expected).mean() > 0.99
 

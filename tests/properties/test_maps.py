@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from random_gears import random_gear, rotational
 
+import damperopt
 from damperopt.charts.maps import StabilityMap
 from damperopt.charts.plane import Axis, Plane
 
@@ -43,7 +44,7 @@ def test_maps_of_random_gears(main_gear, seed, plane):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("geometry", ["published", "planar", "spatial"])
+@pytest.mark.parametrize("geometry", [pytest.param("published", marks=pytest.mark.verify), "planar", "spatial"])
 def test_maps_of_every_geometry(main_gear, geometry):
     study = main_gear.replace(damper__topology="utas", damper__geometry=geometry)
     found, X, Y, worst, scale, _ = compared(study, study.start, ("c_lambda", 0.0, 2e5), ("L", 0.3, 1.2), 0.1)
@@ -53,10 +54,21 @@ def test_maps_of_every_geometry(main_gear, geometry):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("law", ["tr_r64", "magic_formula"])
+def test_maps_of_tyres_that_change_with_the_load(configs, law):
+    """Their graphs hold comparisons, roots, sines and arctangents of the load."""
+    name = {"tr_r64": "nose_gear_tr_r64", "magic_formula": "main_gear_property_file"}[law]
+    study = damperopt.load(configs / f"{name}.yaml")
+    low, high = study.envelope.loads[0], study.envelope.loads[-1]
+    damped = study.start or {}
+    found, X, Y, worst, scale, damping = compared(study, damped, ("speed", 2.0, 90.0), ("vertical_load", low, high), 0.0)
+    assert np.abs(found.abscissa(X, Y) - worst).max() < 1e-7 * scale.max()
+    assert np.abs(found.damping_ratio(X, Y) - damping).max() < 1e-6
+
+
+@pytest.mark.slow
 def test_map_and_traced_boundary_agree(main_gear):
     """Sixth order, with a compliant damper: pixels on either side of the traced curve."""
-    import damperopt
-
     study = main_gear.replace(damper__series_stiffness=3e7)
     x, y = ("c_lambda", 500.0, 2e5), ("I_arm", 1e-7, 1e-5)
     chart = damperopt.chart(study, x, y, speed=40.0, load=150e3)

@@ -36,8 +36,9 @@ def builds(monkeypatch):
 def test_one_optimisation_builds_each_model_once(main_gear, builds):
     result = damperopt.optimise(main_gear.replace(solver__starts=4))
     assert result.status == "solved"
-    # the problem's symbols, its linear model, and the gear with any damper
-    assert 1 <= builds["model"] <= 3
+    # the problem's symbols, its linear model, and the gear with any damper; of the gear in space with elastic parts, which says
+    # what the thesis' model leaves out, the symbols and two linear models
+    assert 1 <= builds["model"] <= 3 + 3
     assert builds["integrator"] == 0
 
 
@@ -46,8 +47,24 @@ def test_one_optimisation_with_decay_builds_each_model_once(main_gear_with_decay
     study = main_gear_with_decay.replace(solver__starts=2, solver__engine="cvodes")
     assert damperopt.optimise(study).status == "solved"
     # besides: the smooth gear of the search and the exact one of its check
-    assert 1 <= builds["model"] <= 5
+    assert 1 <= builds["model"] <= 5 + 3
     assert builds["integrator"] == 2  # with and without sensitivities
+
+
+@pytest.mark.skipif(not integrators.has_compiler(), reason="needs gcc")
+def test_studies_that_differ_in_numbers_are_translated_once(main_gear_with_decay):
+    study = main_gear_with_decay.replace(solver__engine="erk")
+    heavier = study.replace(gear__yaw_inertia=1.1 * study.gear.yaw_inertia)
+    points = [decay.DecayAnalysis(study).at(DESIGN, 40.0, 150e3)]
+    translated = integrators._compiled.cache_info().misses
+    points.append(decay.DecayAnalysis(heavier).at(DESIGN, 40.0, 150e3))
+    assert integrators._compiled.cache_info().misses == translated
+    other = study.replace(damper__topology="utas")
+    decay.DecayAnalysis(other).at(other.start, 40.0, 150e3)
+    assert integrators._compiled.cache_info().misses == translated + 1
+    interpreted = [decay.DecayAnalysis(s.replace(solver__engine="cvodes")).at(DESIGN, 40.0, 150e3) for s in (study, heavier)]
+    assert [p.ratio for p in points] == pytest.approx([p.ratio for p in interpreted], rel=1e-4)
+    assert points[0].ratio != pytest.approx(points[1].ratio, rel=1e-2)
 
 
 def test_a_loop_over_designs_builds_nothing_again(main_gear, builds):

@@ -67,7 +67,7 @@ def scipy_ratio(topology, design, V, release, **changes):
 
 
 @pytest.mark.parametrize("topology", DESIGNS)
-@pytest.mark.parametrize("V", [12.0, 37.0, 90.0])
+@pytest.mark.parametrize("V", [pytest.param(12.0, marks=pytest.mark.slow), 37.0, 90.0])
 def test_small_release_decays_like_the_matrix_exponential(analysis, topology, V):
     """Release of 1e-6 rad: the nonlinear terms are of relative order 1e-10 (of the arm) to 1e-6 (UTAS' lever)."""
     k_psi, c_psi = planar_coefficients(topology, **DESIGNS[topology])
@@ -89,7 +89,7 @@ def test_small_release_decays_like_the_matrix_exponential(analysis, topology, V)
 
 
 @pytest.mark.parametrize("topology", DESIGNS)
-@pytest.mark.parametrize("V", [20.0, 60.0])
+@pytest.mark.parametrize("V", [pytest.param(20.0, marks=pytest.mark.slow), 60.0])
 def test_ratio_and_gradient_are_those_of_scipy(analysis, topology, V):
     """Release of 2 deg on the nonlinear gear; gradients against central differences of SciPy's ratio."""
     design, release = DESIGNS[topology], np.deg2rad(2.0)

@@ -18,6 +18,12 @@ MAIN = Context(largest_vertical=150e3, e_eff=0.12, trail=0.03, half_contact_leng
 """Main gear, 150 kN as the vertical of every case; twice that in a landing is the same for a rule that takes half."""
 
 
+@pytest.fixture(scope="module")
+def main_gear(main_gear):
+    """With the rules' cases, and their factor from limit to ultimate load."""
+    return main_gear.replace(loads__cases={}, requirements__ultimate_factor=1.5)
+
+
 def rows_of(study):
     return {row.name: row for row in study.loads.table(study)}
 

@@ -23,7 +23,7 @@ def modal(A, x0, time):
     return trajectory(time, vectors[0] @ parts, vectors[0] @ (s[:, None] * parts))
 
 
-@pytest.mark.parametrize("speed", [8.0, 14.0, 40.0, 80.0])
+@pytest.mark.parametrize("speed", [8.0, *(pytest.param(speed, marks=pytest.mark.slow) for speed in (14.0, 40.0)), 80.0])
 @pytest.mark.parametrize("state", ["string_deflection", "bending_angle", "yaw_rate"])
 def test_a_beating_decay_is_never_called_growing(main_gear, speed, state):
     """Linear motions of a gear proved stable, cut off at any time: also where the amplitude of a beat is rising."""

@@ -113,7 +113,7 @@ def test_utas_stress_is_that_of_the_deflected_cantilever(main_gear):
 
 
 def test_laminate_is_sized_by_strain_and_given_torque_replaces_the_derived_one(main_gear):
-    study = main_gear.replace(material="CFRP UD", requirements__limit_torque=10e3)
+    study = main_gear.replace(material="CFRP UD", requirements__limit_torque=10e3, requirements__ultimate_factor=1.5)
     problem = DesignProblem(study)
     design = study.start
     assert problem.limit_event(design)["linkage_torque"] == 10e3

@@ -125,3 +125,11 @@ def test_numbers_are_found_in_a_result(main_gear):
     assert answer.damper_force == result.limit_event["damper_force"]
     assert answer.working_stroke >= 10 * main_gear.requirements.apex_clearance * (1 - 1e-6)
     assert answer.limits == result.constraints
+
+
+def test_a_tyre_of_another_size_than_the_wheel_is_named(configs):
+    study = damperopt.load(configs / "nose_gear_tr_r64.yaml")
+    assert not implausible(study)
+    (found,) = implausible(study.replace(gear__wheel_radius=0.4, gear__yaw_inertia=4.0))
+    assert (found.key, found.value) == ("gear.wheel_radius", 0.4)
+    assert found.usual == pytest.approx((0.8 * 0.2286, 1.02 * 0.2286))  # 18 in across

@@ -18,6 +18,12 @@ def problem(request, main_gear):
     return DesignProblem(main_gear.replace(damper__topology=request.param))
 
 
+@pytest.fixture(scope="module")
+def design(problem):
+    """The optimum."""
+    return damperopt.optimise(problem.study.replace(solver__starts=3)).design
+
+
 def random_designs(problem, count):
     return [dict(zip(problem.design_names, row, strict=True)) for row in sobol_designs(problem, count).tolist()]
 
@@ -63,9 +69,8 @@ def test_gradient_of_the_objective_is_that_of_differences(problem, form):
         assert exact[i] == pytest.approx(difference, rel=1e-5, abs=1e-6)
 
 
-def test_both_forms_end_in_the_same_optimum(problem):
+def test_both_forms_end_in_the_same_optimum(problem, design):
     solver = NlpSolver(problem)
-    design = damperopt.optimise(problem.study.replace(solver__starts=3)).design
     near = {name: value * 1.01 for name, value in design.items()}
     points = [(p.speed, p.load) for p in damperopt.worst_points(problem.model.at(design), problem.study.envelope)]
     masses = [solver.solve(near, points, form) for form in (HurwitzProgram, FactorProgram)]
@@ -75,19 +80,17 @@ def test_both_forms_end_in_the_same_optimum(problem):
 
 
 @pytest.mark.parametrize("form", [ElasticHurwitzProgram, ElasticFactorProgram])
-def test_elastic_program_needs_nothing_where_a_design_exists(problem, form):
+def test_elastic_program_needs_nothing_where_a_design_exists(problem, design, form):
     solver = NlpSolver(problem)
-    design = damperopt.optimise(problem.study.replace(solver__starts=3)).design
     names = (*problem.constraint_names, "stability_margin")
     solution = solver.solve(design, POINTS[:2], form, relaxed=names)
     assert solution.converged
     assert solution.objective == pytest.approx(0.0, abs=1e-5)
 
 
-def test_parameter_gradient_is_that_of_solving_again(problem):
+def test_parameter_gradient_is_that_of_solving_again(problem, design):
     """Speed and load of an active point, through the multipliers."""
     solver = NlpSolver(problem)
-    design = damperopt.optimise(problem.study.replace(solver__starts=3)).design
     point = (30.0, 150e3)
     base = solver.solve(design, [point])
     for column, step in ((0, 0.05), (1, 300.0)):

@@ -36,7 +36,7 @@ class LeadingPoint(ContactLine):
         alpha = atan(y / sigma)
         return Slips((y_t,), alpha, alpha)
 
-    def response(self, s: Expr, linear: Linear) -> tuple[Expr, Expr, Expr, Expr]:
+    def response(self, s: Expr, linear: Linear, speed: Expr = 1.0) -> tuple[Expr, Expr, Expr, Expr]:
         """C (theta (1 - a s) - s eta)/(1 + sigma s), with C the stiffness of force or moment."""
         C_Fa, C_Ma, sigma, a = linear
         theta, eta = (1 - a * s) / (1 + sigma * s), -s / (1 + sigma * s)

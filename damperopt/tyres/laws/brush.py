@@ -1,4 +1,8 @@
-"""The brush law of Fiala: bristles that stick at the front of the footprint and slide at its rear."""
+"""The brush law of Fiala: bristles that stick at the front of the footprint and slide at its rear.
+
+At zero camber and without drive or brake the UA law of Gim and Nikravesh is the same function, C_a S l^2 + mu F_z (1 - 3 l^2 +
+2 l^3) with l = 1 - C_a S/(3 mu F_z) and S = |tan(alpha)|; the Basic and Enhanced models of Adams Aircraft are these two.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from ...ports.sizing import Peaks
 from ...quantities.record import refuse
 from ...quantities.units import Quantity
 from ..base import Linear, SlipLaw
+from ..over_load import SlopeOverLoad
 
 __all__ = ["BrushLaw"]
 
@@ -21,9 +26,9 @@ class BrushLaw(SlipLaw):
 
     LOAD_POWERS: ClassVar = (0,)
 
-    law: Literal["brush", "fiala"]
-    cornering_stiffness: Annotated[float, Quantity("N/rad", above=0, example="440 kN/rad")]
-    """C_Fa, slope of the side force at zero slip, for any load [N/rad]."""
+    law: Literal["brush", "fiala", "ua"]
+    cornering_stiffness: SlopeOverLoad
+    """C_Fa, slope of the side force at zero slip [N/rad]; a number for any load, or a table over load."""
     friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")]
     """mu of the footprint at zero slip [1]."""
     sliding_friction: Annotated[float, Quantity("1", above=0, at_most=2, example="0.7")] | None = None

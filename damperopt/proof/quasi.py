@@ -1,0 +1,240 @@
+"""D(lambda) of a gear with contact memory: an exact polynomial in lambda, V, F_z and the numbers of its contact lines.
+
+With f and m what force and moment take from the foremost contact point of a wheel (`tyres.string`), the gear is a matrix whose
+entries are rational in V and F_z and linear in f, m and the tyre's numbers; D is its characteristic polynomial, expanded over
+the rationals. lambda^n, n the states of the structure and one per wheel, has the coefficient 1: D has no poles, and no
+impedance is left in a denominator, since every compliance has its state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import casadi as ca
+import flint
+
+from ..errors import CertificateError
+from ..stability.response import Structure
+from ..study.study import Study
+from ..symbols import data_values
+from .balls import ball, enclosed
+from .parts import parts_in_powers
+from .rationals import decimal, evaluate, rational
+
+__all__ = ["Quasipolynomial", "Rows", "Slice", "Tyre"]
+
+Q: TypeAlias = flint.fmpq
+Rows: TypeAlias = dict[tuple[int, int, int], flint.acb_poly]
+
+BITS = 128
+"""Of coefficients, which are exact, and of the tyre's numbers as balls."""
+
+VARIABLES = ("s", "V", "F", "f", "m", "side", "swivel", "turn", "softness", "reach")
+SIDE = VARIABLES.index("side")
+
+
+@dataclass(frozen=True)
+class Tyre:
+    """Numbers of a contact line as balls.
+
+    Attributes
+    ----------
+    force, moment : sequence of arb
+        (3,) of 1, E, phi1, and of 1, E, chi.
+    others : sequence of arb
+        side, swivel, turn, softness, reach.
+    length : arb
+        2 a [m].
+    """
+
+    force: Sequence[flint.arb]
+    moment: Sequence[flint.arb]
+    others: Sequence[flint.arb]
+    length: flint.arb
+
+    @classmethod
+    def of(cls, row: Sequence[flint.arb]) -> Tyre:
+        """From numbers in the order of `stability.response.FOOTPRINT`."""
+        return cls(row[0:3], row[3:6], row[6:11], row[11])
+
+
+@dataclass(frozen=True)
+class Slice:
+    """D over an interval of loads: polynomials in lambda by the powers (k, l, j) of f, m and V that they are multiplied by.
+
+    Powers of V come last: in the polynomials in lambda, whose terms cancel where a root is near, V must not have spread yet.
+
+    Attributes
+    ----------
+    loads : tuple of fmpq
+        Ends [N].
+    middle, over, slope : dict
+        D at the middle load, over all of them, and its derivative to the load without that of f and m; `slope` is empty at one
+        load.
+    tyre_middle, tyre_over, tyre_slope : Tyre
+        Numbers of f and m, likewise.
+    """
+
+    loads: tuple[Q, Q]
+    middle: Rows
+    over: Rows
+    slope: Rows
+    tyre_middle: Tyre
+    tyre_over: Tyre
+    tyre_slope: Tyre
+
+    @property
+    def half_width(self) -> flint.arb:
+        """Half of the interval of loads [N]."""
+        return flint.arb((self.loads[1] - self.loads[0]) / 2)
+
+
+class Quasipolynomial:
+    """D of one study and design.
+
+    Parameters
+    ----------
+    study : Study
+        With a contact line that has a delay.
+    structure : Structure
+        Of the study.
+    design : mapping
+        Design variables by name [SI].
+
+    Attributes
+    ----------
+    degree : int
+        n
+
+    Raises
+    ------
+    CertificateError
+        If the structure cannot be evaluated exactly, or does not keep its declared powers.
+    """
+
+    def __init__(self, study: Study, structure: Structure, design: Mapping[str, float]):
+        self._study, self._structure, self._design = study, structure, design
+        self._data = [decimal(value) for value in data_values(study)]
+        self.degree = len(structure.states) + structure.wheels
+        self._kept: dict[Q | None, list[Any]] = {}
+        load, data = ca.SX.sym("load"), ca.SX.sym("data", len(self._data))
+        assert structure.footprint is not None
+        row = structure.footprint(load, data)
+        if not ca.is_equal(row, ca.repmat(row[0, :], structure.wheels, 1), 100) and structure.wheels > 1:
+            raise CertificateError("the wheels of this gear have tyres of their own: no certificate with contact memory")
+        self._numbers = ca.Function("numbers", [load, data], [ca.densify(row[0, :])])
+        self._slopes = ca.Function("slopes", [load, data], [ca.densify(ca.jacobian(row[0, :], load))])
+
+    def slice(self, low: Q, high: Q) -> Slice:
+        """D between two loads [N], which may be one."""
+        with flint.ctx.workprec(BITS):
+            middle, over = flint.arb((low + high) / 2), ball(flint.arb(low), flint.arb(high))
+            terms, by_load = self._terms(low, high)
+            data = [flint.arb(value) for value in self._data]
+            at = Tyre.of(enclosed(self._numbers, [[middle], data]))
+            if low == high:
+                found = self._collected(terms, middle, at)
+                return Slice((low, high), found, found, {}, at, at, at)
+            across, change = (Tyre.of(enclosed(f, [[over], data])) for f in (self._numbers, self._slopes))
+            slope: Rows = {}
+            for derivative, factor in zip(by_load, (flint.arb(1), *change.others), strict=True):
+                for key, row in self._collected(derivative, over, across).items():
+                    slope[key] = slope.get(key, flint.acb_poly([0])) + row * flint.acb(factor)
+            found, spread = self._collected(terms, middle, at), self._collected(terms, over, across)
+            return Slice((low, high), found, spread, slope, at, across, change)
+
+    def _terms(self, low: Q, high: Q) -> tuple[list[Any], list[list[Any]]]:
+        """Terms of D, and of its derivatives to F and to the numbers of the tyre that are not in f and m."""
+        key = None if self._structure.powers.load is not None else low
+        if key not in self._kept:
+            if key is not None and low != high:
+                raise CertificateError("the structure of this gear is no polynomial in the load")
+            self._kept[key] = [self._expanded([low, high] if key is None else [low])]
+        polynomial = self._kept[key][0]
+        if len(self._kept[key]) == 1:
+            self._kept[key] += [list(_with_balls(polynomial)), []]
+        if low != high and not self._kept[key][2]:
+            variables = ("F", *VARIABLES[SIDE:])
+            self._kept[key][2] = [list(_with_balls(polynomial.derivative(name))) for name in variables]
+        return self._kept[key][1], self._kept[key][2]
+
+    def _expanded(self, loads: list[Q]) -> flint.fmpq_mpoly:
+        """D over the rationals."""
+        structure, speed = self._structure, self._study.envelope.speed
+        values = [rational(self._design[name]) for name in structure.design_names]
+
+        def system(V: Q, F: Q) -> flint.fmpq_mat:
+            return flint.fmpq_mat(evaluate(structure.system, [values, [V], [F], self._data]))
+
+        parts = parts_in_powers(system, structure.powers, (decimal(speed.min), decimal(speed.max)), loads)
+        ring = flint.fmpq_mpoly_ctx.get(VARIABLES, "lex")
+        s, V, F, f, m, side, swivel, turn, softness, reach = ring.gens()
+        zero, n, w = ring.constant(0), len(structure.states), structure.wheels
+        size = n + 2 * w
+        lift = [
+            max([0, *(-i for (i, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)
+        ]
+        self.lift = sum(lift)
+
+        def entry(r: int, c: int) -> Any:
+            """Of the system, times the power of V that clears its row."""
+            return sum((V ** (i + lift[r]) * F**j * part[r, c] for (i, j), part in parts.items() if part[r, c] != 0), zero)
+
+        rows = [[(V ** lift[r] * s if r == c else zero) - entry(r, c) for c in range(n)] + [zero] * w for r in range(n)]
+        for k in range(w):
+            eta, theta = ([parts[0, 0][n + 2 * k + q, c] for c in range(n)] for q in (0, 1))
+            if any(
+                part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0) for q in (0, 1) for c in range(n)
+            ):
+                raise CertificateError("position or swivel of a wheel hangs on speed or load in the linear model")
+            for r in range(n):
+                B_F, B_M = entry(r, n + 2 * k), entry(r, n + 2 * k + 1)
+                for c in range(n):
+                    if eta[c] != 0 or theta[c] != 0:
+                        rows[r][c] += B_F * (side * eta[c] + swivel * theta[c]) - B_M * (turn * theta[c])
+                rows[r][n + k] = m * B_M - f * B_F
+            path = [zero - V * (softness * eta[c] + reach * theta[c]) for c in range(n)]
+            rows.append([*path, *((s + V * softness if k == q else zero) for q in range(w))])
+        return _determinant(rows, ring)
+
+    def _collected(self, terms: Sequence[Any], load: flint.arb, tyre: Tyre) -> Rows:
+        """By powers of f, m and V polynomials in lambda, with load and tyre put in."""
+        values = (load, *tyre.others)
+        found: dict[tuple[int, int, int], dict[int, flint.arb]] = {}
+        powers: dict[tuple[int, int], flint.arb] = {}
+        for exponents, coefficient in terms:
+            i, j, in_F, k, l = exponents[:5]
+            for which, exponent in enumerate((in_F, *exponents[SIDE:])):
+                if exponent:
+                    if (which, exponent) not in powers:
+                        powers[which, exponent] = values[which] ** exponent
+                    coefficient = coefficient * powers[which, exponent]
+            row = found.setdefault((k, l, j - self.lift), {})
+            row[i] = row[i] + coefficient if i in row else coefficient
+        zero = flint.arb(0)
+        return {key: flint.acb_poly([row.get(i, zero) for i in range(max(row) + 1)]) for key, row in found.items()}
+
+
+def _determinant(rows: list[list[Any]], ring: Any) -> Any:
+    """By expansion along the rows, each minor of the first rows once."""
+    minors = {0: ring.constant(1)}
+    for row in rows:
+        larger: dict[int, Any] = {}
+        for columns, minor in minors.items():
+            for c, entry in enumerate(row):
+                if entry != 0 and not columns >> c & 1:
+                    after = bin(columns >> (c + 1)).count("1")
+                    term = minor * entry if after % 2 == 0 else -(minor * entry)
+                    key = columns | 1 << c
+                    larger[key] = larger[key] + term if key in larger else term
+        minors = larger
+    return minors[(1 << len(rows)) - 1]
+
+
+def _with_balls(polynomial: flint.fmpq_mpoly) -> Any:
+    """(exponents, coefficient as a ball) of every term."""
+    with flint.ctx.workprec(BITS):
+        for exponents, coefficient in polynomial.terms():
+            yield tuple(map(int, exponents)), flint.arb(coefficient)

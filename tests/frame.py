@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 from Pynite import FEModel3D
 
@@ -50,7 +51,7 @@ class Frame:
         self.fe.add_spring(name, start, end, k)
 
     def tapered(self, name: str, root: str, tip: str, A: float, I: float, joint: bool = False) -> None:
-        """A cantilever of uniform stress in similar sections, I ~ x^(4/3) from its tip, free or in a joint; A and I at the root."""
+        """A cantilever of uniform stress in similar sections, I ~ x^(4/3) from its tip, free or jointed; A and I at the root."""
         (a, b) = (self.fe.nodes[end] for end in (root, tip))
         ends = [root, *(f"{name} {i}" for i in range(1, SLICES)), tip]
         for i, node in enumerate(ends[1:-1], 1):
@@ -86,10 +87,10 @@ def torque_link(
     frame.tapered(name, hinge, apex, A, I, joint=True)
 
 
-def tube_area(I: float, ratio: float = 0.1) -> float:
+def tube_area(I: Any, ratio: float = 0.1) -> Any:
     """Area of a tube with wall over outer diameter `ratio`: A = pi d^2 r (1 - r), I = A d^2 (1 + (1 - 2 r)^2)/16."""
     shape = math.pi * ratio * (1 - ratio)
-    return math.sqrt(16 * I * shape / (1 + (1 - 2 * ratio) ** 2))
+    return (16 * I * shape / (1 + (1 - 2 * ratio) ** 2)) ** 0.5
 
 
 def layout(topology: str, design: dict[str, float], E: float, k_d: float, links: str, support: str, root: str) -> Frame:

@@ -59,13 +59,8 @@ class Attack:
         found = self.problem.over_designs(designs)
         d = dict(zip(self.names, designs.T, strict=True))
         study = self.problem.study
-        chain = chain_by_hand(
-            self.topology,
-            d,
-            study.material.youngs_modulus,
-            FORMS[self.topology],
-            tube_area(d["I_arm"]) if "I_arm" in d else None,
-        )
+        area = tube_area(d["I_arm"]) if "I_arm" in d else None
+        chain = chain_by_hand(self.topology, d, study.material.youngs_modulus, FORMS[self.topology], area)
         matrices = state_matrices(self.speeds, self.gear, chain, d["c_lambda"], damper_stiffness(d))
         abscissa, ratio = least_of(matrices)
         over = (

@@ -51,7 +51,7 @@ class Frame:
         self.fe.add_spring(name, start, end, k)
 
     def tapered(self, name: str, root: str, tip: str, A: float, I: float, joint: bool = False) -> None:
-        """A cantilever of uniform stress in similar sections, I ~ x^(4/3) from its tip, free or jointed; A and I at the root."""
+        """A cantilever of uniform stress in similar sections, I ~ x^(4/3) from its tip, free or jointed; root A and I."""
         (a, b) = (self.fe.nodes[end] for end in (root, tip))
         ends = [root, *(f"{name} {i}" for i in range(1, SLICES)), tip]
         for i, node in enumerate(ends[1:-1], 1):

@@ -1,4 +1,4 @@
-"""Optima of gears of no aircraft: held by an independent model, beaten by no evolution, and never lighter when more is asked."""
+"""Optima of gears of no aircraft: held by an independent model, beaten by no evolution, never lighter when more is asked."""
 
 import json
 
@@ -57,7 +57,7 @@ def test_no_evolution_finds_a_lighter_design(optimum):
 
 
 def test_more_starts_find_nothing_lighter(optimum):
-    topology, study, result = optimum
+    _, study, result = optimum
     more = damperopt.optimise(study.replace(solver__starts=64, solver__seed=7))
     assert more.mass.total > result.mass.total * (1 - SAME_MASS)
 

@@ -121,7 +121,7 @@ def test_more_asked_is_never_lighter(topology, kind, seed):
 
 
 def test_more_moment_of_the_tyre_is_never_lighter(configs):
-    """UTAS without decay: at these factors a local optimum, and a stroke under the limit torque, once made the larger lighter."""
+    """UTAS without decay: a local optimum, and a stroke under the limit torque, once made the larger factor lighter."""
     study = damperopt.load(configs / "main_gear.yaml").replace(
         damper__topology="utas",
         requirements__decay=None,

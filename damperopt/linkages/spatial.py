@@ -34,6 +34,7 @@ def closed_loop(
     *,
     stroke: Expr = 0,
     y_root: Expr = 0,
+    root_retreat: Expr = 0,
     arm_length: Expr = None,
     damper_end: Point | None = None,
     damper_length: Expr = None,
@@ -52,6 +53,8 @@ def closed_loop(
         Of the shock strut [m].
     y_root : Expr
         Of the arm on the upper hinge line [m].
+    root_retreat : Expr
+        Of the arm's root from the apex over the deflection, where an elastic hinge line lets it.
     arm_length : Expr or None
         Unflexed arm [m]; None: a stiff upper link, and spring and damper in the gap at the apex.
     damper_end : Point or None
@@ -72,7 +75,8 @@ def closed_loop(
     eps, q, z, psi = (symbol(name) for name in ("arm_deflection", "apex_reach", "apex_height", "psi"))
     x, y = q * cos(psi), q * sin(psi)
     along = l_arm - foreshortening * eps**2 / l_arm
-    u_tip, y_tip = (along * L + eps * y_root) / l_arm, y_root + (eps * L - along * y_root) / l_arm
+    u_tip = (along * L + eps * y_root) / l_arm - root_retreat * eps
+    y_tip = y_root + (eps * L - along * y_root) / l_arm
     closure = (q**2 + (z + h) ** 2 - L**2, x**2 + (z - h) ** 2 - u_tip**2, y - y_tip)
     unknowns = (eps, q, z)
     s = eps if damper_end is None else sqrt(sum(_square(a, b) for a, b in zip((x, y, z), damper_end, strict=True)))

@@ -1,4 +1,15 @@
-"""UTAS' layout: a bending arm and the damper side by side, from the upper hinge line to the apex."""
+"""UTAS' layout: a bending arm and the damper side by side, from the upper hinge line to the apex.
+
+Both hang on the hinge line, a beam of the arm's section that the strut clamps at y = 0. Arm shear V and damper force S bend its
+halves by M_+(t) = V l_arm + q t and M_-(t) = q t at the distance t from their ends, q = S L/l_arm: across the plane of arm and
+damper nothing but they acts on the apex, so that the arm pushes as the damper pulls. The strain energy,
+
+    2 E I U = V^2 l^2 (l/3 + b) + V q l b^2 + 2/3 q^2 b^3,    l = l_arm,
+
+gives with S = 0 the deflection of the arm's tip, 1 + 3 b/l times that of a clamped arm, and the retreat of its root,
+3 b^2/(2 l (l + 3 b)) of that, which takes stroke from the damper; and at its least over V (the apex held) the stiffness along
+the damper, 1/k = (L/l)^2 b^3/(E I) (2/3 - 3 b/(4 (l + 3 b))).
+"""
 
 from __future__ import annotations
 
@@ -46,31 +57,34 @@ class Utas(TorqueLinks):
         """Arm from (0, b, h), damper from (0, -b, h), both to the apex."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         l_arm = sqrt(L**2 + b**2)
+        retreat = 3 * b**2 / (2 * l_arm * (l_arm + 3 * b)) if self.is_sized("arm") else 0
         return closed_loop(
             design,
             3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm),
             stroke=stroke,
             y_root=b,
+            root_retreat=retreat,
             arm_length=l_arm,
             damper_end=(0, -b, h),
             damper_length=l_arm,
             spring_lever=ell * l_arm / L,
-            damper_lever=2 * b * ell / l_arm,
+            damper_lever=ell * (2 * b / l_arm - retreat),
         )
 
     def _softer(self, b: Expr, l_arm: Expr) -> Expr:
-        """Deflection of the tip over that of an arm clamped at its root: a hinge line of its section turns by M b/(E I)."""
+        """Deflection of the tip over that of an arm clamped at its root."""
         return 1 + 3 * b / l_arm if self.is_sized("arm") else 1
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
-        """Along the damper: the arm in tension, and the hinge line that its root bends by its share across it."""
+        """Along the damper: the arm in compression, and both halves of the hinge line."""
         links = super().elastic(design, study, stroke)
         if not self.is_sized("arm"):
             return links
         E, I_arm, L, b = study.material.youngs_modulus, design["I_arm"], design["L"], design["b"]
         l_arm = sqrt(L**2 + b**2)
         arm = Compliant("arm", E * area(study.mass.arm_section, I_arm) / l_arm)
-        return (*links, arm, Compliant("arm", 3 * E * I_arm / b**3 * (l_arm / L) ** 2))
+        halves = E * I_arm / b**3 * (l_arm / L) ** 2 / (2 / 3 - 3 * b / (4 * (l_arm + 3 * b)))
+        return (*links, arm, Compliant("arm", halves))
 
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
         """Link, arm and damper."""

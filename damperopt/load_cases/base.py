@@ -23,6 +23,9 @@ __all__ = [
     "worst_torque",
 ]
 
+ULTIMATE = 1.5
+"""Ultimate over limit load (14 CFR 25.303)."""
+
 FRICTION = 0.8
 """Of a tyre on dry ground, as the rules have it (25.493, 25.503)."""
 
@@ -255,11 +258,11 @@ class Row:
     nature: str
     off: str = ""
 
-    def limit_torque(self, ultimate_factor: Expr = 1.5) -> Expr:
-        """Yaw torque at limit load [N m]: of an ultimate case its part."""
+    def limit_torque(self) -> Expr:
+        """Yaw torque at limit load [N m]: of an ultimate case its part, whatever factor a study asks for beyond it."""
         if self.loads is None:
             return 0.0
-        return self.loads.yaw_torque / (ultimate_factor if self.level == "ultimate" else 1)
+        return self.loads.yaw_torque / (ULTIMATE if self.level == "ultimate" else 1)
 
 
 def load_cases() -> dict[str, type[LoadCase]]:
@@ -296,19 +299,17 @@ def load_table(cases: Mapping[str, Any], context: Context) -> tuple[Row, ...]:
     )
 
 
-def worst_torque(table: tuple[Row, ...], ultimate_factor: Expr = 1.5, static_only: bool = False) -> Expr:
+def worst_torque(table: tuple[Row, ...], static_only: bool = False) -> Expr:
     """Largest limit yaw torque of the cases that count [N m]; 0 where none does.
 
     Parameters
     ----------
     table : tuple of Row
-    ultimate_factor : Expr
-        Ultimate over limit load.
     static_only : bool
         Without the peaks of motions.
     """
     worst: Expr = 0.0
     for row in table:
         if not row.off and not (static_only and row.nature == "dynamic"):
-            worst = larger(row.limit_torque(ultimate_factor), worst)
+            worst = larger(row.limit_torque(), worst)
     return worst

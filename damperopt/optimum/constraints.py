@@ -14,8 +14,9 @@ from ..linkages.base import TorqueLinks
 from ..objectives import RELAXED, SizedLayout
 from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
+from ..strength.buckling import least_lateral_inertia
 from ..strength.materials import allowable_stress
-from ..strength.members import allowables, fatigue_ratio, root_stress
+from ..strength.members import allowables, distance, fatigue_ratio, root_stress
 
 __all__ = ["Constraint", "geometry", "strength"]
 
@@ -104,17 +105,20 @@ def _arm(study: Any, member: Member, event: LimitEvent) -> list[Constraint]:
 
 def _elastic_arm(study: Any, member: Member, event: LimitEvent, stress: Any) -> list[Constraint]:
     """Yield at limit load, rupture at ultimate load, and the spectrum of flights."""
-    name = member.kind
+    name, section = member.kind, getattr(study.mass, member.section)
     found = [
         Constraint(f"{name}_{check}", stress, allowed, False, "Pa", RELAXED[check], ratio=True)
-        for check, allowed in allowables(study.material, event).items()
+        for check, allowed in allowables(study.material, event, section).items()
     ]
+    lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
+    moment = event.ultimate_factor * getattr(event, member.load) * lever
+    tipped = least_lateral_inertia(section, study.material, moment, lever)
+    if tipped is not None:
+        found.append(Constraint(f"{name}_lateral", member.inertia, tipped, True, "m^4", RELAXED["lateral"], ratio=True))
     ratio = fatigue_ratio(member, stress, event, study)
-    return (
-        found
-        if ratio is None
-        else [*found, Constraint(f"{name}_fatigue", ratio, 1, False, "1", RELAXED["fatigue"], ratio=True)]
-    )
+    if ratio is not None:
+        found.append(Constraint(f"{name}_fatigue", ratio, 1, False, "1", RELAXED["fatigue"], ratio=True))
+    return found
 
 
 def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: SizedLayout) -> list[Constraint]:

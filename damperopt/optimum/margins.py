@@ -17,6 +17,7 @@ from ..linkages.elastic import elastic_linkage
 from ..ports.linkage import Member
 from ..ports.sizing import LimitEvent
 from ..results import LoadRow, MarginRow
+from ..strength.buckling import least_lateral_inertia, local_buckling_stress, weak_axis
 from ..strength.cylinder import bore, rod_length
 from ..strength.fatigue import Basquin, FlightStresses, life_damage_counted
 from ..strength.limit_event import limit_event
@@ -29,7 +30,6 @@ from ..strength.margins import (
     fatigue_margin,
     lug_margins,
     stress_margins,
-    wall_buckling_stress,
 )
 from ..strength.members import distance, root_stress
 from ..strength.sections import fibre_distance, shape_numbers
@@ -52,9 +52,9 @@ def load_rows(study: Study, design: Mapping[str, float], peaks: Mapping[str, flo
     peaks : mapping of str to float
         Simulated, by the names of `measure.PEAKS`; empty where nothing was simulated.
     """
-    reach, factor = float(elastic_linkage(study, design).reach), study.required.ultimate_factor
+    reach = float(elastic_linkage(study, design).reach)
     rows = study.loads.table(study, shimmy_torque=peaks.get("linkage_torque"))
-    torques = {row.name: float(row.limit_torque(factor)) for row in rows}
+    torques = {row.name: float(row.limit_torque()) for row in rows}
     worst = max((torques[row.name] for row in rows if not row.off), default=0.0)
     found = []
     for row in rows:
@@ -151,11 +151,18 @@ def _of_member(study: Study, member: Member, loads: LimitEvent, case: str) -> It
     force = stress * member.area if member.area is not None else float(getattr(loads, member.load))
     if member.area is not None:
         length = float(distance(member.start, member.end) if member.length is None else member.length)
-        column = Column(member.area, inertia, length, radius, wall)
+        column = Column(member.area, float(inertia * weak_axis(section)), length, radius, wall)
         yield from column_margins(member.part, case, force, column, material, required.ultimate_factor)
-    elif wall is not None:
-        allowable = wall_buckling_stress(material.youngs_modulus, radius, wall, material.poissons_ratio, "bending")
-        yield Margin(member.part, "wall", case, "ultimate", stress, allowable, required.ultimate_factor)
+    thin = local_buckling_stress(section, material, "bending" if member.area is None else "axial")
+    if thin is not None and (member.area is None or wall is None):
+        yield Margin(member.part, "wall", case, "ultimate", stress, float(thin), required.ultimate_factor)
+    if member.area is None:
+        lever = float(distance(member.start, member.end) if member.bending_length is None else member.bending_length)
+        least = least_lateral_inertia(section, material, force * lever, lever)
+        if least is not None:
+            yield Margin(
+                member.part, "lateral", case, "ultimate", float(least), member.inertia, required.ultimate_factor, "m^4"
+            )
     if member.kind != "hinge":
         lug = study.mass.lug
         eye = Lug(*(ratio * size for ratio in (lug.bore, lug.thickness, lug.width, lug.edge)))

@@ -189,7 +189,8 @@ def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, floa
         # the section modulus grows with I^(3/4)
         return f"{member.part}, root", member.inertia, min((member.inertia / value) ** 0.75 for value in least.values()) - 1
     if member.inertia is not None:
-        allowed = allowables(study.material, event) if study.damper.has_sized_parts() else {}
+        section = getattr(study.mass, member.section)
+        allowed = allowables(study.material, event, section) if study.damper.has_sized_parts() else {}
         stress = min(
             allowed.values(),
             default=allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor),

@@ -112,8 +112,8 @@ def flight_shares(study: Any, linkage: Linkage, torque: Expr, load: Expr) -> Fli
     # a case that is switched off sizes nothing at its limit load, but the gear turns and is towed all the same
     rows = {row.name: row for row in study.loads.table(study, load=load) if row.loads is not None}
     spectrum, decay = required.fatigue.spectrum, required.decay
-    turning = rows["turning"].limit_torque(required.ultimate_factor) if "turning" in rows else 0.0
-    towing = rows["towing"].limit_torque(required.ultimate_factor) if "towing" in rows else turning
+    turning = rows["turning"].limit_torque() if "turning" in rows else 0.0
+    towing = rows["towing"].limit_torque() if "towing" in rows else turning
     if decay is None:
         peaks = study.tyre.peaks(load, study.tyre.pressure)
         landing = 0.0 if peaks is None else peaks.aligning_moment + absolute(study.gear.lever()) * peaks.side_force

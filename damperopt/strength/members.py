@@ -8,6 +8,7 @@ from typing import Any
 from ..expressions.calculus import Expr, is_symbol, sqrt, where
 from ..ports.linkage import Member, Point
 from ..ports.sizing import LimitEvent
+from .buckling import least_lateral_inertia, local_buckling_stress, weak_axis
 from .fatigue import Basquin, FlightStresses, life_damage
 from .materials import allowable_stress, ultimate_stress
 from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
@@ -52,10 +53,24 @@ def member_mass(member: Member, event: LimitEvent, study: Any) -> Expr:
     return model.cantilever_taper * rho * length * area_for_modulus(section, moment / allowable) * with_fittings
 
 
-def allowables(material: Any, event: LimitEvent) -> dict[str, Expr]:
-    """Stress at the limit load that each check allows [Pa]: yield at limit, rupture (of a laminate the strain) at ultimate."""
+def allowables(material: Any, event: LimitEvent, section: Any = None, load: Any = "bending") -> dict[str, Expr]:
+    """Stress at the limit load that each check allows [Pa].
+
+    Yield at limit, rupture (of a laminate the strain) at ultimate, and of a section with thin parts their buckling at ultimate.
+
+    Parameters
+    ----------
+    material : Material
+    event : LimitEvent
+    section : Section or None
+    load : str
+        ``axial`` or ``bending``.
+    """
     found = {"ultimate": ultimate_stress(material) / event.ultimate_factor}
-    return found if material.yield_strength is None else {"limit": material.yield_strength / event.safety_factor, **found}
+    if material.yield_strength is not None:
+        found = {"limit": material.yield_strength / event.safety_factor, **found}
+    thin = None if section is None else local_buckling_stress(section, material, load)
+    return found if thin is None else found | {"wall": thin / event.ultimate_factor}
 
 
 def fatigue_ratio(member: Member, stress: Expr, event: LimitEvent, study: Any) -> Expr:
@@ -92,13 +107,16 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     Returns
     -------
     dict of str to Expr
-        ``limit``, ``ultimate``, ``fatigue``, and for a leg ``buckling``: as a column with pinned ends at ultimate load.
+        ``limit``, ``ultimate``, ``wall``, ``lateral``, ``fatigue``, and for a leg ``buckling``: as a column with pinned ends at
+        ultimate load, about its weak axis.
     """
     section, load = getattr(study.mass, member.section), getattr(event, member.load)
-    allowed = allowables(study.material, event)
+    allowed = allowables(study.material, event, section, "bending" if member.area is None else "axial")
     if member.area is None:
         lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
         found = {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        tipped = least_lateral_inertia(section, study.material, event.ultimate_factor * load * lever, lever)
+        found |= {} if tipped is None else {"lateral": tipped}
         stress = load * lever / section_modulus(section, member.inertia)
         ratio = fatigue_ratio(member, stress, event, study)
         return found if ratio is None else found | {"fatigue": member.inertia * ratio ** (4 / 3)}
@@ -107,6 +125,7 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     least: dict[str, Expr] = {name: force / stress for name, stress in allowed.items()}
     # in the stress of Euler's load, c A: columns that are short yield first (Johnson), tangent to Euler's at half the yield
     F, c = event.ultimate_factor * force, math.pi**2 * study.material.youngs_modulus / (kappa_area * length) ** 2
+    c = c * weak_axis(section)
     yields = ultimate_stress(study.material) if study.material.yield_strength is None else study.material.yield_strength
     euler = sqrt(F / c)
     column = where(c * euler < yields / 2, euler, F / yields + yields / (4 * c))

@@ -14,6 +14,8 @@ __all__ = ["RELAXED", "member_sizes"]
 RELAXED = {
     "limit": ("requirements.limit_factor", "loads"),
     "ultimate": ("requirements.ultimate_factor", "loads"),
+    "wall": ("requirements.ultimate_factor", "mass", "loads"),
+    "lateral": ("requirements.ultimate_factor", "mass", "loads"),
     "buckling": ("requirements.ultimate_factor", "loads"),
     "fatigue": ("requirements.fatigue.spectrum", "loads"),
 }

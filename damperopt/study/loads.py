@@ -158,7 +158,7 @@ class GroundLoads(Record):
         load : Expr or None
             Largest vertical load [N]; None: that of the study's envelope.
         """
-        return worst_torque(self.table(study, shimmy_torque, load), study.requirements.ultimate_factor)
+        return worst_torque(self.table(study, shimmy_torque, load))
 
     def service_torque(self, study: Any, load: Expr = None) -> Expr:
         """Torque under which the damper has its working stroke [N m].

@@ -200,7 +200,6 @@ def test_an_ultimate_case_counts_by_its_part_at_limit():
         Row("off", "", "", Loads(1.0, moment=1e6), "limit", "static", "off"),
     )
     assert worst_torque(table) == pytest.approx(12e3)
-    assert worst_torque(table, ultimate_factor=2.0) == pytest.approx(9e3)
 
 
 def test_trail_of_a_tyre_is_inside_its_footprint(main_gear):

@@ -14,6 +14,7 @@ from pydantic_core import PydanticCustomError
 from .errors import ConfigError
 from .load_rows import LoadRow, MarginRow
 from .reading import MOST_RESULT_BYTES, printable, text_of
+from .stock_rows import StockCandidate, StockResult
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -31,6 +32,8 @@ __all__ = [
     "Relaxation",
     "Sensitivity",
     "StartResult",
+    "StockCandidate",
+    "StockResult",
     "Verification",
     "load_result",
 ]
@@ -298,6 +301,7 @@ class DesignResult(_Record):
     decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
+    stock: StockResult | None = None
     starts: tuple[StartResult, ...] = ()
     local_optima: tuple[LocalOptimum, ...] = ()
     provenance: Provenance | None = None

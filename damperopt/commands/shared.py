@@ -209,6 +209,10 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
     }
     if kind := result.config.get("damper", {}).get("kind"):
         changes["damper__kind"] = kind
+    if result.stock is not None:
+        changes |= {path.replace(".", "__"): value for path, value in result.stock.changes.items()}
+        if "damper" in changes:  # the whole block, of a bought damper
+            changes = {path: value for path, value in changes.items() if not path.startswith("damper__")}
     try:
         changed = study.replace(**changes)
     except ConfigError as error:

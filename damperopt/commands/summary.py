@@ -17,9 +17,10 @@ from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
 from ..quantities.record import quantity_of
 from ..quantities.shown import rounded, scale, unit_text
-from ..results import Certificate, DesignResult, OperatingPoint
+from ..results import Certificate, DesignResult, OperatingPoint, StockResult
 from ..stability.critical import CriticalSpeed
 from ..stability.wavelength import Wavelength
+from ..stock_rows import candidate_cells, stock_words
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
@@ -59,6 +60,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     mass, worst, certificate, check = result.mass, result.stability, result.certificate, result.verification
     if mass is None or worst is None or certificate is None or check is None:
         console.print(escape(result.message), soft_wrap=True)
+        _show_stock(console, result.stock)
         return
     parts = ", ".join(f"{name} {m:.2f}" for name, m in mass.parts.items())
     console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
@@ -66,6 +68,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     for name, value in (result.design | result.derived).items():
         table.add_row(name, *_number(value, unit_of_name(name, result.units)))
     console.print(table)
+    _show_stock(console, result.stock)
     table = _table("constraint", "value", "limit", "unit", "kg per unit of the limit")
     for c in result.constraints:
         style = "bold" if c.active else "dim"
@@ -106,6 +109,23 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     console.print("Not checked: " + escape("; ".join(result.not_checked)), soft_wrap=True, style="dim")
     if result.status == "failed":
         console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
+
+
+SHOWN_CANDIDATES = 8
+"""Rows of sizes that exist; result.json and the report have all."""
+
+
+def _show_stock(console: Console, stock: StockResult | None) -> None:
+    """Sizes that exist: what was chosen, what it costs, and what became of the others."""
+    if stock is None:
+        return
+    console.print(escape(stock_words(stock)), soft_wrap=True)
+    table = _table("sizes that exist", "mass, kg", "")
+    for row in stock.candidates[:SHOWN_CANDIDATES]:
+        table.add_row(*map(escape, candidate_cells(row)), style="bold" if row.outcome == "chosen" else "")
+    console.print(table)
+    if (more := len(stock.candidates) - SHOWN_CANDIDATES) > 0:
+        console.print(f"and {more} more in result.json", style="dim")
 
 
 def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:

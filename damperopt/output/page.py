@@ -13,6 +13,7 @@ import yaml
 from ..errors import ConfigError
 from ..results import DesignResult, load_result
 from ..stability.modes import ModeTable, track_modes
+from ..stock_rows import candidate_cells, stock_words
 from ..study.scope import covers
 from ..study.study import Study
 from . import facts, words
@@ -58,6 +59,8 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         result=best,
         results=results,
         words=words,
+        stock_words=stock_words,
+        candidate_cells=candidate_cells,
         asked=words.asked(study),
         covers=covers(study),
         design=words.design_rows(study, best),

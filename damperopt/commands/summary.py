@@ -120,10 +120,10 @@ def _show_stock(console: Console, stock: StockResult | None) -> None:
     if stock is None:
         return
     console.print(escape(stock_words(stock)), soft_wrap=True)
-    table = _table("sizes that exist", "mass, kg", "")
     for row in stock.candidates[:SHOWN_CANDIDATES]:
-        table.add_row(*map(escape, candidate_cells(row)), style="bold" if row.outcome == "chosen" else "")
-    console.print(table)
+        sizes, mass, outcome = candidate_cells(row)
+        line = f"{mass or '-':>10}  {sizes}: {outcome}"
+        console.print(escape(line), soft_wrap=True, style="bold" if row.outcome == "chosen" else "dim")
     if (more := len(stock.candidates) - SHOWN_CANDIDATES) > 0:
         console.print(f"and {more} more in result.json", style="dim")
 

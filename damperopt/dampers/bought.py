@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..ports.sizing import Capacity, Force, LimitEvent, Sized
-from ..quantities.record import Damping, Length, Name, Record, SeriesStiffness
+from ..quantities.record import Damping, Length, Name, Record, SeriesStiffness, refuse
 from ..quantities.record import Force as Newtons
 from ..quantities.units import Quantity
 from .base import Context, Damper
@@ -43,6 +43,14 @@ class Bought(Damper):
     kind: Literal["bought"] = "bought"
     row: CatalogueDamper
     """Of the catalogue."""
+
+    @model_validator(mode="after")
+    def _one_stiffness(self) -> Self:
+        compliance = getattr(self, "compliance", None)
+        if compliance is not None and not isinstance(compliance.damper, str):
+            found = f"{compliance.damper:g} N/m beside series_stiffness of the row"
+            raise refuse("compliance.damper", found, "the row's alone")
+        return self
 
     def force(
         self,
@@ -90,4 +98,5 @@ class Bought(Damper):
         return (
             "mass and stiffness of what lengthens a bought damper to the pins of the layout",
             "strength and fatigue of a bought damper beyond its largest force",
+            "temperature of a bought damper, whose row holds at the one that its maker states",
         )

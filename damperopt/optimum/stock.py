@@ -43,6 +43,9 @@ SECTIONS = {
 MOST_SOLVED = 2000
 """Optima after which the search gives up."""
 
+OF_DAMPERS = ("largest_force", "usable_stroke", "piston_pressure", "damper_length", "apex_room")
+"""Constraints that another damper would meet: looked at first where there is no design."""
+
 EXPLAINED = 12
 """Dampers for which the least relaxation is looked for where there is no design; it takes seconds for each."""
 
@@ -180,6 +183,9 @@ class StockSearch:
         if "bore" not in type(study.damper).model_fields:
             self._left_out.append(f"bores: a damper of kind '{study.damper.kind}' takes none")
             return [_Damper()]
+        if study.damper.bore is not None:
+            self._left_out.append("bores: damper.bore gives one")
+            return [_Damper()]
         return [_Damper(f"bore {1e3 * bore:g} mm", {"damper.bore": bore}) for bore in sorted(bores)]
 
     def run(self, start: Mapping[str, float]) -> None:
@@ -228,8 +234,7 @@ class StockSearch:
                 return
         why = f"no design found from two starts ({found.solution.status})"
         if explained:
-            missing = diagnose(solver, [own], alone=False).infeasibility
-            why = why if missing is None else missing_words(missing.shortfalls)
+            why = _lacking(solver, own) or why
         self._rows.append(StockCandidate(box.parts, box.combinations, "no design", None, why))
 
     def _solver(self, box: _Box) -> NlpSolver:
@@ -271,6 +276,16 @@ class StockSearch:
     def idle(self) -> bool:
         """Whether no part of the study is made of what the lists have."""
         return not any(box.parts for box in self._boxes)
+
+
+def _lacking(solver: NlpSolver, start: Mapping[str, float]) -> str:
+    """What a damper would have to have for a design; where that is not enough, what else."""
+    names = solver.problem.constraint_names
+    for among in ([name for name in names if name in OF_DAMPERS], names):
+        missing = diagnose(solver, [start], among).infeasibility if among else None
+        if missing is not None:
+            return missing_words(missing.shortfalls)
+    return ""
 
 
 def _bought(study: Study, row: Any) -> dict[str, Any]:

@@ -96,7 +96,7 @@ class Study(Record):
 
     def wheel_loads(self, load: float) -> tuple[float, ...]:
         """Loads on the wheels [N] at a load on the gear [N]."""
-        at_rest = {state.name: 0.0 for state in self.gear.STATES}
+        at_rest = {state.name: 0.0 for state in self.gear.states()}
         return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
 
     def beyond_tyre(self, load: float) -> str:

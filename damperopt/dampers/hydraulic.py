@@ -107,10 +107,11 @@ class Hydraulic(Damper):
         return Hydraulic.SIZES if self.bore is None else (Hydraulic.ROD, Hydraulic.STROKE)
 
     def piston(self, design: Mapping[str, Expr]) -> Expr | None:
-        """A_piston, or what the rod leaves of the bore; chosen by the optimiser where the damper's stiffness comes from it."""
-        if not self.is_sized("damper"):
-            return None
-        return design["A_piston"] if self.bore is None else math.pi / 4 * (self.bore**2 - design["rod_diameter"] ** 2)
+        """A_piston, or what the rod leaves of a given bore; None where neither is chosen."""
+        if self.bore is None:
+            return design["A_piston"] if self.is_sized("damper") else None
+        rod = design.get("rod_diameter")
+        return None if rod is None else math.pi / 4 * (self.bore**2 - rod**2)
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
         """Oil column and rod."""

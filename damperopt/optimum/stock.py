@@ -169,6 +169,11 @@ class StockSearch:
                     f"{bounds.max:.4g}; allowed: diameters and walls with one"
                 )
             found[name] = tuple(sorted(run, key=lambda tube: (_number(name, tube), tube.diameter)))
+        known = {SECTIONS[name][1] for name in study.variable_names if name in SECTIONS}
+        others = {member.part for member in study.damper.members(study.start) if member.section and member.section not in known}
+        self._left_out += [
+            f"tubes for the {part}: without a compliance of its own its section is no choice" for part in sorted(others)
+        ]
         return found
 
     def _dampers(self, study: Study) -> list[_Damper]:

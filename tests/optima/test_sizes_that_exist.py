@@ -1,16 +1,20 @@
 """Sizes that exist: the search against every combination, each solved alone from the study's own start."""
 
 import itertools
+import math
 
 import pytest
 
 import damperopt
 from damperopt.design import _proved_alone
+from damperopt.errors import Unfinished
+from damperopt.optimum import stock
 from damperopt.optimum.exchange import first_points
 from damperopt.optimum.local import best_local
 from damperopt.optimum.problem import DesignProblem
 from damperopt.optimum.solve import NlpSolver
 from damperopt.optimum.stock import StockSearch, of_chosen_sizes
+from damperopt.output.facts import sizes
 from damperopt.strength.stock import Tube
 
 ONE = {"solver__starts": 1}
@@ -150,6 +154,22 @@ def test_what_has_no_effect_is_said(gear):
     assert any("no tubes" in words for words in nothing.stock.leaves_out)
 
 
+def test_rigid_chain_has_bores_alone(gear):
+    """The cylinder has the bore that was chosen, and the area of its piston is the annulus around the rod."""
+    available, _ = lists([0.04], [0.003])
+    rigid = gear.replace(damper__compliance="rigid")
+    found = damperopt.optimise(rigid.replace(available={**available, "bores": [0.025, 0.04]}))
+    assert found.stock.chosen == {"damper": "bore 25 mm"}
+    assert any("tubes for the torque links" in words for words in found.stock.leaves_out)
+    shown = {(size.part, size.words): size.value for size in sizes(of_chosen_sizes(rigid, found), found)}
+    assert shown["damper cylinder", "bore"] == pytest.approx(0.025)
+    area = math.pi / 4 * (0.025**2 - found.derived["rod_diameter"] ** 2)
+    assert shown["damper cylinder", "peak pressure"] == pytest.approx(found.limit_event["damper_force"] / area)
+    (pressed,) = (c for c in found.constraints if c.name == "piston_pressure")
+    assert pressed.limit == pytest.approx(area)
+    assert pressed.value <= area
+
+
 def test_lists_without_a_fitting_size(gear):
     available, _ = lists([0.006], [0.001])
     with pytest.raises(damperopt.ConfigError, match=r"no tube for the torque links, design.A_link from"):
@@ -163,13 +183,11 @@ def test_lists_without_a_fitting_size(gear):
 
 
 def test_interrupt_keeps_the_optimum_of_any_size(gear, monkeypatch):
-    from damperopt.errors import Unfinished
-    from damperopt.optimum import stock
-
+    solver_of = stock.best_local
     solved = []
 
     def interrupted(*given):
-        solved.append(best_local(*given))
+        solved.append(solver_of(*given))
         if len(solved) == 3:
             raise KeyboardInterrupt
         return solved[-1]

@@ -329,7 +329,9 @@ def of_stock(study: Study, search: StockSearch, continuous: DesignResult) -> tup
         stopped = True
     stock = search.record(mass, finished=not stopped)
     if search.answer is not None:
-        return search.answer.model_copy(update={"stock": stock}), False
+        beside = "" if stock.price is None else f", {stock.price:+.3g} kg beside the optimum of any size"
+        message = f"of sizes that exist{beside}: {search.answer.message}"
+        return search.answer.model_copy(update={"stock": stock, "message": message}), False
     if stopped:
         message = f"interrupted before a design of sizes that exist was proved; of any size: {continuous.message}"
         return continuous.model_copy(update={"stock": stock, "message": message}), True

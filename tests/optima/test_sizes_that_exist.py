@@ -142,6 +142,28 @@ def test_bound_of_a_box_is_below_all_that_it_holds(gear):
         assert alone is None or alone.objective >= whole.objective * (1 - 1e-9)
 
 
+def test_what_fails_a_check_is_passed_over(gear):
+    """The lightest choice fails its proof here; the next one is taken, and the first is listed with the reason."""
+    available, tubes = lists([0.04, 0.045, 0.05], [0.0016, 0.002])
+    each = each_alone(gear, [of_tubes("A_link", "link_section", tubes)])
+    first, second, *_ = sorted(each, key=each.get)
+    asked = []
+
+    def prove(solver, found):
+        asked.append(found.solution.objective)
+        result = _proved_alone(solver, found)
+        return result.model_copy(update={"status": "failed", "message": "by hand"}) if len(asked) == 1 else result
+
+    search = StockSearch(gear.replace(available=available), prove)
+    search.run(gear.start)
+    record = search.record(None, finished=True)
+    assert asked == pytest.approx([each[first], each[second]], rel=1e-6)
+    assert (record.chosen["torque links"],) == second
+    (failed,) = (row for row in record.candidates if row.outcome == "not proved")
+    assert ((failed.parts["torque links"],), failed.why) == (first, "by hand")
+    assert sum(row.combinations for row in record.candidates) == len(tubes)
+
+
 def test_what_has_no_effect_is_said(gear):
     solid = {"mass__link_section": {"family": "solid_round"}}
     available, _ = lists([0.04], [0.003])

@@ -24,11 +24,11 @@ from .optimum.answer import (
 )
 from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution
-from .optimum.left_out import left_out_by_number
 from .optimum.local import best_local, held_again
 from .optimum.margins import load_rows, margin_rows
 from .optimum.multistart import StartOutcome, run_starts, starting_designs
 from .optimum.problem import DesignProblem
+from .optimum.said import said_of
 from .optimum.sensitivity import sensitivities
 from .optimum.solve import NlpSolver
 from .optimum.stock import StockSearch, of_chosen_sizes, of_stock
@@ -348,7 +348,7 @@ def _checked(
     if weights:
         message += f"; the mass is decided by {next(iter(weights))}"
     message = "; ".join(failures) or message
-    return base.model_copy(
+    found = base.model_copy(
         update={
             "status": "failed" if failures else "solved",
             "message": message,
@@ -363,9 +363,10 @@ def _checked(
             "decided_by": weights,
             "loads": load_rows(study, solution.design, simulated),
             "margins": rows,
-            "not_checked": (*left_out_by_number(study, solution.design), *not_checked(study)),
             "certificate": certificate,
             "verification": verification,
             "sensitivities": sensitivities(problem, solution, solver.decay if decay else None),
         }
     )
+    said = said_of(study, found, problem.model.at(solution.design))
+    return found.model_copy(update=said | {"not_checked": (*said["leaves_out"], *not_checked(study))})

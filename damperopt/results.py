@@ -13,7 +13,9 @@ from pydantic_core import PydanticCustomError
 
 from .errors import ConfigError
 from .load_rows import LoadRow, MarginRow
+from .older_results import completed
 from .reading import MOST_RESULT_BYTES, printable, text_of
+from .search_rows import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
 from .stock_rows import StockCandidate, StockResult
 
 __all__ = [
@@ -38,7 +40,11 @@ __all__ = [
     "load_result",
 ]
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+"""That is written; version 1 is read."""
+
+Verdict = Literal["proved", "refuted", "undecided"]
+"""Of a certificate: it holds, a point of the envelope contradicts it, or neither was shown."""
 
 _FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
 """What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""
@@ -97,13 +103,18 @@ class Certificate:
     counterexample: tuple[float, float] | None
     reason: str
     boxes: int = 0
-    verdict: Literal["proved", "refuted", "undecided"] | None = None
+    verdict: Verdict | None = None
     frequency: float | None = None
 
     @property
     def over_a_range(self) -> bool:
         """Whether `loads` are the ends of a range."""
         return self.method in ("bernstein", "balls, rectangle")
+
+    @property
+    def found(self) -> Verdict:
+        """The verdict; where none was given, that of the other fields."""
+        return self.verdict or ("proved" if self.proved else "undecided" if self.counterexample is None else "refuted")
 
 
 @dataclass(frozen=True)
@@ -203,55 +214,6 @@ class Verification(_Record):
     agreeing_starts: int
 
 
-class StartResult(_Record):
-    """What became of one start: solved or not, mass [kg], rounds of the exchange, program that succeeded."""
-
-    index: int
-    solved: bool
-    status: str
-    mass: float | None
-    rounds: int
-    form: str
-    design: dict[str, float]
-
-
-class LocalOptimum(_Record):
-    """A local optimum and how many starts ended there."""
-
-    mass: float
-    starts: int
-    design: dict[str, float]
-
-
-class Sensitivity(_Record):
-    """d mass/d input [kg per `unit`], and the change of mass in per cent for one per cent of the input."""
-
-    input: str
-    value: float
-    unit: str
-    derivative: float
-    elasticity: float
-
-
-class Relaxation(_Record):
-    """A constraint that gives way: its limit, the limit that would do, and the inputs that move it."""
-
-    name: str
-    limit: float
-    needed: float
-    unit: str
-    inputs: tuple[str, ...]
-    speed: float | None = None
-    load: float | None = None
-
-
-class Infeasibility(_Record):
-    """Why there is no design: the smallest set of shortfalls, and each relaxation that alone would be enough."""
-
-    shortfalls: tuple[Relaxation, ...]
-    alone_enough: tuple[Relaxation, ...]
-
-
 class Provenance(_Record):
     """Where a result comes from. Times in seconds."""
 
@@ -274,9 +236,12 @@ class DesignResult(_Record):
     units in `units`.
     `limit_event` holds the peaks that size the parts [SI]. `decided_by` says what the mass hangs on: per cent of mass for one
     per cent of the limits of each kind of constraint.
+    `verdict` is that of the certificate, `covers` and `leaves_out` say what it is about and what it is not; `witness` has the
+    coordinates of a point that refutes it by name [SI]. `rests_on` says what kind of numbers strength and life rest on,
+    `implausible` what a practitioner would not believe, `completed` what a file of an older version did not hold.
     """
 
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     status: Literal["solved", "infeasible", "failed"]
     message: str
     study: str
@@ -294,7 +259,13 @@ class DesignResult(_Record):
     loads: tuple[LoadRow, ...] = ()
     margins: tuple[MarginRow, ...] = ()
     implausible: tuple[str, ...] = ()
+    rests_on: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
+    verdict: Verdict = "undecided"
+    witness: dict[str, float] = {}
+    covers: tuple[str, ...] = ()
+    leaves_out: tuple[str, ...] = ()
+    completed: tuple[str, ...] = ()
     certificate: Certificate | None = None
     verification: Verification | None = None
     decay: DecayCheck | None = None
@@ -307,8 +278,16 @@ class DesignResult(_Record):
     provenance: Provenance | None = None
     config: dict[str, Any] = {}
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_version(cls, data: Any) -> Any:
+        return completed(data) if isinstance(data, dict) and data.get("schema_version") == 1 else data
+
     @model_validator(mode="after")
     def _possible(self) -> Self:
+        found: Verdict = "undecided" if self.certificate is None else self.certificate.found
+        if self.verdict != found:
+            raise _impossible(f"a verdict that is not that of the certificate, {found}", self.verdict)
         if self.status == "solved":
             self._is_proved()
         if self.status == "infeasible" and (self.mass is not None or self.infeasibility is None):
@@ -326,7 +305,12 @@ class DesignResult(_Record):
         proof, check, decay = self.certificate, self.verification, self.decay
         assert proof is not None
         assert check is not None
-        if not proof.proved or proof.counterexample is not None or proof.margin < self.stability_margin:
+        if (
+            proof.found != "proved"
+            or not proof.proved
+            or proof.counterexample is not None
+            or proof.margin < self.stability_margin
+        ):
             raise _impossible("status solved without a certificate that proves its margin", proof.reason)
         decayed = decay is None or (decay.passed and decay.ratio <= decay.limit)
         if not (check.passed and check.grid_passed and decayed):
@@ -388,7 +372,7 @@ def load_result(path: str | Path) -> DesignResult:
         key = ".".join(printable(step) for step in first["loc"]) or "(file)"
         raise ConfigError(
             f"{printable(file)}:1: {key}: {printable(first['msg'])}; "
-            f"allowed: a result.json of 'optimise', schema version {SCHEMA_VERSION}"
+            f"allowed: a result.json of 'optimise', schema version 1 or {SCHEMA_VERSION}"
         ) from None
 
 

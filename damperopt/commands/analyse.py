@@ -25,6 +25,7 @@ def analyse(
 
     Exit code 0 also where the gear is unstable: that is an answer; 2: bad input; 3: not proved stable, with --require-stable.
     """
+    from ..optimum.left_out import left_out_by_number
     from ..output.folder import run_folder, write_run
     from ..output.gallery import draw_modes
     from ..output.tables import write_modes
@@ -58,6 +59,7 @@ def analyse(
         searched=(low, high),
         wave=shortest_wavelength(study, tables),
         marginal=any(marginal_throughout(gear, load, low, high) for load in study.envelope.loads),
+        left_out=left_out_by_number(study, values),
     )
 
     def write(place: Path) -> None:

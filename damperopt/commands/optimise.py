@@ -38,8 +38,8 @@ def optimise(
     from ..strength.materials import MATERIALS
     from ..study import config
     from ..study.components import optimisable
-    from . import summary
     from .arguments import choices
+    from .design_summary import show_design, show_ranking
 
     study = config.load(file)
     topologies = choices(topology, optimisable(), "--topology")
@@ -87,9 +87,9 @@ def optimise(
 
     write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:
-        summary.show_design(out, ordered[0], answered[0])
+        show_design(out, ordered[0], answered[0])
     else:
-        summary.show_ranking(out, ordered)
+        show_ranking(out, ordered)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
     if interrupted:
         searched = (

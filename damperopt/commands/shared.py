@@ -202,13 +202,15 @@ def study_and_design(file: Path, design: Path | None) -> tuple[Study, dict[str, 
 
 def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -> tuple[Study, dict[str, float]]:
     """The study with the layout and material that the result was made for, and its design."""
-    changes = {
+    changes: dict[str, Any] = {
         "damper__topology": result.topology,
         "damper__geometry": result.geometry,
         "material": result.config.get("material", study.material.name),
     }
     if kind := result.config.get("damper", {}).get("kind"):
         changes["damper__kind"] = kind
+    older = _as_it_was(study, result)
+    changes |= {key.replace(".", "__"): value for key, value in older.items()}
     if result.stock is not None:
         changes |= {path.replace(".", "__"): value for path, value in result.stock.changes.items()}
         if "damper" in changes:  # the whole block, of a bought damper
@@ -229,4 +231,15 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
         soft_wrap=True,
         markup=False,
     )
+    if older:
+        taken = ", ".join(f"{key} {value}" for key, value in older.items())
+        out.print(f"{source} is {result.completed[0]}; taken from it: {taken}.", soft_wrap=True, markup=False)
     return changed, result.design
+
+
+def _as_it_was(study: Study, result: DesignResult) -> dict[str, Any]:
+    """What a design of schema version 1 was made for, of those keys that the study leaves to their defaults."""
+    if not result.completed:
+        return {}
+    found = {"damper.compliance": "rigid"} if "compliance" not in study.damper.model_fields_set else {}
+    return found | ({"tyre.contact": "leading_point"} if "contact" not in study.tyre.model_fields_set else {})

@@ -70,7 +70,9 @@ def _of_study(text: str, file: Path) -> tuple[str, list[str]]:
     from ..study.plausibility import implausible
 
     study = loads(text, str(file))
-    return f"{study.name}, {study.damper.topology}, {study.gear.kind}", [str(number) for number in implausible(study)]
+    bounds = [study.variable(name) for name in study.variable_names]
+    fixed = study.start if all(variable.min == variable.max for variable in bounds) else None
+    return f"{study.name}, {study.damper.topology}, {study.gear.kind}", [str(number) for number in implausible(study, fixed)]
 
 
 def _of_sweep(file: Path) -> tuple[str, list[str]]:

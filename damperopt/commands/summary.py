@@ -17,10 +17,9 @@ from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
 from ..quantities.record import quantity_of
 from ..quantities.shown import rounded, scale, unit_text
-from ..results import Certificate, DesignResult, OperatingPoint, StockResult
+from ..results import Certificate, OperatingPoint
 from ..stability.critical import CriticalSpeed
 from ..stability.wavelength import Wavelength
-from ..stock_rows import candidate_cells, stock_words
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
@@ -30,12 +29,12 @@ from ..tyres.property_file import PropertyFile
 
 __all__ = [
     "disturbance_words",
+    "number_and_unit",
+    "plain_table",
     "show_analysis",
     "show_chart",
     "show_claims",
-    "show_design",
     "show_motion",
-    "show_ranking",
     "show_tyre",
 ]
 
@@ -49,97 +48,6 @@ SHOWN_PEAKS = (
     "arm_stress",
 )
 
-WORDS = {"solved": "[bold green]solved[/]", "infeasible": "[bold red]infeasible[/]", "failed": "[bold red]failed[/]"}
-
-
-def show_design(console: Console, result: DesignResult, study: Study) -> None:
-    """One result: mass, design, constraints, proof and what it covers."""
-    console.print(
-        f"\n{WORDS[result.status]}: {escape(result.study)}, {result.topology} ({result.geometry}), {escape(result.material)}"
-    )
-    mass, worst, certificate, check = result.mass, result.stability, result.certificate, result.verification
-    if mass is None or worst is None or certificate is None or check is None:
-        console.print(escape(result.message), soft_wrap=True)
-        _show_stock(console, result.stock)
-        return
-    parts = ", ".join(f"{name} {m:.2f}" for name, m in mass.parts.items())
-    console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
-    table = _table("design variable", "value", "unit")
-    for name, value in (result.design | result.derived).items():
-        table.add_row(name, *_number(value, unit_of_name(name, result.units)))
-    console.print(table)
-    _show_stock(console, result.stock)
-    table = _table("constraint", "value", "limit", "unit", "kg per unit of the limit")
-    for c in result.constraints:
-        style = "bold" if c.active else "dim"
-        price = f"{c.shadow_price:.3g}" if c.active else ""
-        table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
-    console.print(table)
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
-    proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
-    loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
-    console.print(
-        f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
-        f"{certificate.speed[1]:g} m/s, {loads} kN",
-        soft_wrap=True,
-    )
-    console.print(escape(" ".join(covers(study))), soft_wrap=True)
-    console.print(
-        f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "
-        f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
-        soft_wrap=True,
-    )
-    if result.decay is not None:
-        decay = result.decay
-        verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
-        console.print(
-            f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
-            f"{decay.load / 1e3:g} kN, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
-            f"; optimised with {decay.engine}",
-            soft_wrap=True,
-        )
-    if result.decided_by:
-        kinds = ", ".join(f"{kind} {weight:.2g} %" for kind, weight in result.decided_by.items())
-        console.print(f"What decides the mass, per 1 % of the limits: {kinds}", soft_wrap=True)
-    others = [f"{o.mass:.3f} kg ({o.starts})" for o in result.local_optima[1:]]
-    if others:
-        console.print(f"Other local optima (starts): {', '.join(others)}", soft_wrap=True)
-    top = [s for s in result.sensitivities if s.value != 0][:5]
-    console.print("Mass per +1 % of: " + ", ".join(f"{s.input} {s.elasticity:+.2f} %" for s in top), soft_wrap=True)
-    console.print("Not checked: " + escape("; ".join(result.not_checked)), soft_wrap=True, style="dim")
-    if result.status == "failed":
-        console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
-
-
-SHOWN_CANDIDATES = 8
-"""Rows of sizes that exist; result.json and the report have all."""
-
-
-def _show_stock(console: Console, stock: StockResult | None) -> None:
-    """Sizes that exist: what was chosen, what it costs, and what became of the others."""
-    if stock is None:
-        return
-    console.print(escape(stock_words(stock)), soft_wrap=True)
-    for row in stock.candidates[:SHOWN_CANDIDATES]:
-        sizes, mass, outcome = candidate_cells(row)
-        line = f"{mass or '-':>10}  {sizes}: {outcome}"
-        console.print(escape(line), soft_wrap=True, style="bold" if row.outcome == "chosen" else "dim")
-    if (more := len(stock.candidates) - SHOWN_CANDIDATES) > 0:
-        console.print(f"and {more} more in result.json", style="dim")
-
-
-def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
-    """Combinations at equal margins, the lightest first."""
-    table = _table("", "topology", "material", "mass, kg", "status", "decided by")
-    for position, result in enumerate(results, 1):
-        mass = f"{result.mass.total:.3f}" if result.mass else ""
-        active = ", ".join(c.name for c in result.constraints if c.active)
-        table.add_row(str(position), result.topology, escape(result.material), mass, WORDS[result.status], active)
-    console.print(table)
-    for result in results:
-        if result.status != "solved":
-            console.print(f"{result.topology}, {escape(result.material)}: {escape(result.message)}", soft_wrap=True)
-
 
 def disturbance_words(disturbance: Disturbance) -> str:
     """A disturbance in words, such as ``release of yaw angle 1 deg``."""
@@ -149,7 +57,9 @@ def disturbance_words(disturbance: Disturbance) -> str:
         for name, field in type(block).model_fields.items() if block is not None else ():
             quantity, value = quantity_of(field.annotation, field.metadata), getattr(block, name)
             if value:
-                parts.append(" ".join((kind, "of", name.replace("_", " "), *_number(value, quantity.unit if quantity else ""))))
+                parts.append(
+                    " ".join((kind, "of", name.replace("_", " "), *number_and_unit(value, quantity.unit if quantity else "")))
+                )
     return ", ".join(parts)
 
 
@@ -181,13 +91,13 @@ def show_motion(
             f"{motion.frequency:.4g} Hz",
             soft_wrap=True,
         )
-    table = _table("peak", "value", "unit", *(("sized for",) if sized else ()))
+    table = plain_table("peak", "value", "unit", *(("sized for",) if sized else ()))
     for name in SHOWN_PEAKS:
         if name in motion.peaks:
             value, unit = motion.peaks[name], trajectory.units[name]
             limit = sized.get(name) if name in PEAKS else None
             beside = "" if limit is None else f"{limit:.4g} {unit}" + (" [red]exceeded[/]" if value > limit else "")
-            shown = _number(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
+            shown = number_and_unit(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
             table.add_row(name.replace("_", " "), *shown, *((beside,) if sized else ()))
     console.print(table)
 
@@ -202,14 +112,15 @@ def show_analysis(
     searched: tuple[float, float],
     wave: Wavelength | None,
     marginal: bool = False,
+    left_out: Sequence[str] = (),
 ) -> None:
     """Critical speeds, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
     if design:
-        text = ", ".join(" ".join((name, *_number(value, unit_of_name(name)))) for name, value in design.items())
+        text = ", ".join(" ".join((name, *number_and_unit(value, unit_of_name(name)))) for name, value in design.items())
         console.print(text, soft_wrap=True)
     if critical:
-        table = _table("critical speed", "load", "kind", "frequency", "root", "gear")
+        table = plain_table("critical speed", "load", "kind", "frequency", "root", "gear")
         for c in critical:
             after = "unstable" if c.destabilising else "stable"
             sides = "touches the line, nothing changes" if c.touching else "unstable on both sides"
@@ -232,7 +143,7 @@ def show_analysis(
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
         console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
-    console.print("Not checked: " + escape("; ".join(leaves_out(study))), soft_wrap=True, style="dim")
+    console.print("Not checked: " + escape("; ".join((*left_out, *leaves_out(study)))), soft_wrap=True, style="dim")
     if wave is not None:
         _show_wavelength(console, wave, study.tyre.contact.least_wave())
 
@@ -250,7 +161,8 @@ def _show_wavelength(console: Console, wave: Wavelength, least: float) -> None:
         )
 
 
-def _table(*columns: str) -> Table:
+def plain_table(*columns: str) -> Table:
+    """Table without lines."""
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
     for column in columns:
         table.add_column(column, justify="right" if column in ("value", "mass, kg") else "left")
@@ -262,7 +174,8 @@ def _fixed(speed: float) -> str:
     return f"{speed:.4f}" if speed >= 1e-3 else f"{speed:.4g}"
 
 
-def _number(value: float, unit: str) -> tuple[str, str]:
+def number_and_unit(value: float, unit: str) -> tuple[str, str]:
+    """Five digits; angles in degrees."""
     if unit == "rad":
         return f"{math.degrees(value):.4g}", "deg"
     return f"{value:.5g}", unit

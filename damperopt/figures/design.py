@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -13,7 +14,10 @@ from ..results import DesignResult
 from ..study.components import unit_of_name
 from .style import plain, quantity_words, styled
 
-__all__ = ["mass_by_part", "region", "tornado"]
+__all__ = ["bounding", "mass_by_part", "region", "tornado"]
+
+OTHERS = (("#8c510a", "--"), ("#5e3c99", "-."), ("#1b7837", ":"), ("#c51b7d", (0, (5, 1, 1, 1))), ("#555555", (0, (1, 1))))
+"""Looks of limits that have none of their own."""
 
 LIMITS = {
     "decay_ratio": ("decay", "#00798c", "-"),
@@ -57,6 +61,22 @@ def tornado(result: DesignResult, shown: int = 12) -> Any:
         return figure
 
 
+def bounding(record: FeasibleRegion) -> list[str]:
+    """Limits that are broken one step beyond the feasible designs.
+
+    Parameters
+    ----------
+    record : FeasibleRegion
+
+    Returns
+    -------
+    list of str
+    """
+    inside = np.pad(record.feasible, 1)
+    beside = inside[:-2, 1:-1] | inside[2:, 1:-1] | inside[1:-1, :-2] | inside[1:-1, 2:]
+    return [name for name, values in record.violated.items() if (beside & ~record.feasible & (values > 0)).any()]
+
+
 def region(record: FeasibleRegion, axis: Any = None) -> Any:
     """Feasible region with the limits that bound it, lines of equal mass and the optimum; returns the Figure."""
     with styled():
@@ -76,6 +96,8 @@ def region(record: FeasibleRegion, axis: Any = None) -> Any:
         for name, (words, colour, style) in LIMITS.items():
             if name in record.violated:
                 limits[words] = (record.violated[name], colour, style)
+        others = [name for name in bounding(record) if name not in LIMITS]
+        limits |= {plain(name.replace("_", " ")): (record.violated[name], *look) for name, look in zip(others, cycle(OTHERS))}
         for name, (values, colour, style) in limits.items():
             if (values > 0).any() and (values < 0).any():
                 axis.contour(X, Y, values, levels=[0], colors=[colour], linestyles=[style], linewidths=1.6)

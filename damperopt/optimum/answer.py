@@ -8,7 +8,6 @@ import numpy as np
 
 from ..results import ConstraintResult, DesignResult, LocalOptimum, Relaxation, StartResult
 from ..study.components import unit_of_name
-from ..study.scope import leaves_out
 from ..study.study import Study
 from .exchange import EnvelopeSolution
 from .problem import DesignProblem
@@ -144,7 +143,7 @@ def decided_by(constraints: Sequence[ConstraintResult], mass: float) -> dict[str
 
 
 def not_checked(study: Study) -> tuple[str, ...]:
-    """What a result says nothing about."""
+    """What a result says nothing about, beside what its proof leaves out."""
     notes = []
     if study.required.decay is None:
         notes.append("decay of large disturbances on the nonlinear model (requirements.decay)")
@@ -155,7 +154,7 @@ def not_checked(study: Study) -> tuple[str, ...]:
         )
     if "I_arm" in study.variable_names and not study.material.has_fatigue_data:
         notes.insert(0, f"fatigue of the bending arm: no Basquin data for {study.material.name}")
-    return (*notes, *leaves_out(study))
+    return tuple(notes)
 
 
 def nothing_yet(study: Study) -> DesignResult:

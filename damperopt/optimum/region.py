@@ -78,7 +78,7 @@ def feasible_region(
     Returns
     -------
     FeasibleRegion
-        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear without compliances.
+        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear and of rigid chains alone.
     """
     problem = DesignProblem(study)
     names = problem.design_names
@@ -101,7 +101,7 @@ def feasible_region(
         stability = -study.required.stability_margin - worst_abscissae_of(problem.model, study, designs, worst)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
     decay = study.required.decay
-    if decay is not None:
+    if decay is not None and problem.plain:
         ratio = np.full(X.size, np.inf)
         ratio[stability > 0] = problem.screening.linear_decay(k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
         rows["decay_ratio"] = np.log(np.maximum(ratio, 1e-12) / decay.ratio).reshape(X.shape)

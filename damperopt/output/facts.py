@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,8 @@ class Size:
         SI unit.
     margin : float or None
         Of safety, load that it bears over limit load, less 1; None where it is no measure of strength.
+    group : str
+        Part of the mass table that it belongs to.
     """
 
     part: str
@@ -46,6 +49,7 @@ class Size:
     value: float
     unit: str
     margin: float | None = None
+    group: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,8 +125,9 @@ def sizes(study: Study, result: DesignResult) -> list[Size]:
     found: list[Size] = []
     for member in members:
         if not member.variable or chosen[member.variable] is member:
-            found += _member(study, member, event)
-    return found + _cylinder(study, event, result.derived | result.design)
+            legs = [other for other in members if member.variable and other.variable == member.variable] or [member]
+            found += [replace(size, group=member.part) for size in _member(study, member, legs, event)]
+    return found + [replace(size, group="damper") for size in _cylinder(study, event, result.derived | result.design)]
 
 
 def _event(study: Study, result: DesignResult) -> LimitEvent | None:
@@ -146,8 +151,8 @@ def _event(study: Study, result: DesignResult) -> LimitEvent | None:
     )
 
 
-def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
-    """Height and wall of the section of a member: of a leg, of an arm, or at the root of a cantilever."""
+def _member(study: Study, member: Member, legs: Sequence[Member], event: LimitEvent) -> list[Size]:
+    """Section of a member, of a leg, of an arm, or at the root of a cantilever; lengths of all that share it; its eyes."""
     section = getattr(study.mass, member.section)
     part, inertia, margin = _section(study, member, event)
     height = 2 * fibre_distance(section, inertia)
@@ -155,7 +160,22 @@ def _member(study: Study, member: Member, event: LimitEvent) -> list[Size]:
     found = [Size(part, words, float(height), "m", float(margin))]
     if section.thickness_ratio is not None:
         found.append(Size(part, "wall", float(section.thickness_ratio * height), "m"))
+    lengths = {leg.name.rpartition(", ")[2]: float(_length(leg)) for leg in legs}
+    if len(set(lengths.values())) > 1:
+        found += [Size(part, f"length, {name}", length, "m") for name, length in lengths.items()]
+    else:
+        found.append(Size(part, "length", next(iter(lengths.values())), "m"))
+    if member.area is not None:
+        found.insert(0, Size(part, "number of legs", float(len(legs)), "1"))
+        feet = [float(leg.start[1]) for leg in legs]
+        found.append(Size(part, "width between the feet", max(feet) - min(feet), "m"))
+    if member.kind != "hinge" and study.damper.has_sized_parts():
+        found.append(Size(part, "bore of its eye, diameter of the pin", float(study.mass.lug.bore * height), "m"))
     return found
+
+
+def _length(member: Member) -> Any:
+    return distance(member.start, member.end) if member.length is None else member.length
 
 
 def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, float, float]:
@@ -175,7 +195,7 @@ def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, floa
             default=allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor),
         )
         return member.name, member.inertia, stress / root_stress(member, event, study) - 1
-    length = distance(member.start, member.end) if member.length is None else member.length
+    length = _length(member)
     allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
     area = area_for_modulus(getattr(study.mass, member.section), getattr(event, member.load) * length / allowable)
     return f"{member.name}, root", (area / kappa_area) ** 2, 0.0
@@ -202,4 +222,7 @@ def _cylinder(study: Study, event: LimitEvent, chosen: Mapping[str, float]) -> l
         Size("damper cylinder", "stroke to one side", float(stroke), "m"),
         Size("damper cylinder", "length of cylinder and rod", float(rod_length(event, model)), "m"),
         Size("damper cylinder", "peak pressure", float(event.damper_force / area), "Pa"),
+        Size("damper cylinder", "proof pressure", float(model.proof_factor * event.damper_force / area), "Pa"),
+        Size("damper cylinder", "burst pressure", float(model.burst_factor * event.damper_force / area), "Pa"),
+        Size("damper", "oil volume", float(area * rod_length(event, model)), "m^3"),
     ]

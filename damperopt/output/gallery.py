@@ -229,7 +229,13 @@ def _nothing(answer: Answer) -> None:
 
 
 _FIGURES = (
-    DesignFigure("linkage", "The linkage, to scale", "Side and top view of the parts at rest.", _nothing, _draw_linkage),
+    DesignFigure(
+        "linkage",
+        "The linkage, to scale",
+        "The parts at rest from the side, from above and from behind.",
+        _nothing,
+        _draw_linkage,
+    ),
     DesignFigure("mass", "Mass by part", "Fittings included.", _nothing, _draw_mass),
     DesignFigure(
         "modes",
@@ -248,7 +254,8 @@ _FIGURES = (
     DesignFigure(
         "region",
         "What bounds the design",
-        "Limits and lines of equal mass in the same plane, at the worst speed.",
+        "Limits and lines of equal mass in the same plane, at the worst speed; without the damping ratio, and "
+        "without the decay of elastic parts.",
         _region,
         _draw_region,
     ),

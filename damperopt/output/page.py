@@ -11,21 +11,16 @@ from typing import Any
 import yaml
 
 from ..errors import ConfigError
+from ..optimum.left_out import left_out_by_number
 from ..results import DesignResult, load_result
 from ..stability.modes import ModeTable, track_modes
 from ..stock_rows import candidate_cells, stock_words
-from ..study.scope import covers
+from ..study.scope import covers, leaves_out
 from ..study.study import Study
-from . import facts, words
+from . import facts, margins, words
 from .gallery import Answer, DesignFigure, figures_of
 
 __all__ = ["report_of", "write_report"]
-
-ASSUMPTIONS = (
-    "Rigid airframe, constant vertical load, straight rolling at constant speed, one wheel.",
-    "Mass and strength follow the sizing rules of the study page; they are estimates for comparison, not a stress report.",
-    "The tyre is a stretched string, or its straight-tangent approximation, with the constants of the study.",
-)
 
 
 def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> str:
@@ -62,15 +57,20 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         stock_words=stock_words,
         candidate_cells=candidate_cells,
         asked=words.asked(study),
-        covers=covers(study),
+        covers=best.covers or covers(study),
+        leaves_out=_leaves_out(study, best),
         design=words.design_rows(study, best),
         constraints=words.constraint_rows(best),
-        loads=words.load_rows(study, best),
-        sizes=words.size_rows(facts.sizes(study, best)) if answer else [],
+        loads=margins.load_cases(best),
+        peaks=margins.peak_rows(study, best),
+        critical=margins.critical_margins(best),
+        unchecked=margins.unchecked(best),
+        by_case=margins.margins_by_case(best),
+        parts=margins.parts_list(best, facts.sizes(study, best)) if answer else [],
         damping=words.damping_rows(facts.least_damping(_modes(answer))) if answer else [],
         beyond=words.beyond(study, facts.next_critical_speed(study, answer.model.at(best.design))) if answer else "",
         figures=[(figure, _embedded(figure, answer, folder)) for figure in figures_of(best)] if answer else [],
-        assumptions=ASSUMPTIONS,
+        assumptions=words.assumptions(study, best),
         config=yaml.safe_dump(_without_nothing(best.config), sort_keys=False, allow_unicode=True),
     )
 
@@ -102,6 +102,13 @@ def _study_of(result: DesignResult) -> Study:
                 "(the file was changed after 'optimise' wrote it)"
             )
     return study
+
+
+def _leaves_out(study: Study, result: DesignResult) -> tuple[str, ...]:
+    """What the proof is not about; of a result that does not hold it, by the study."""
+    if result.leaves_out or not result.design:
+        return result.leaves_out
+    return (*left_out_by_number(study, result.design), *leaves_out(study))
 
 
 def _modes(answer: Answer) -> list[ModeTable]:

@@ -13,12 +13,13 @@ from ..results import DesignResult
 from ..stability.critical import CriticalSpeed
 from ..study.components import unit_of_name
 from ..study.study import Study
-from .facts import BEYOND, LeastDamping, Size, damper_speed
+from .facts import BEYOND, LeastDamping
 
 __all__ = [
     "Line",
     "answer",
     "asked",
+    "assumptions",
     "beyond",
     "certificate",
     "constraint_rows",
@@ -27,10 +28,8 @@ __all__ = [
     "design_rows",
     "input_words",
     "layout_words",
-    "load_rows",
     "number",
     "place",
-    "size_rows",
     "verification",
 ]
 
@@ -42,15 +41,6 @@ DERIVED = {
 """What follows from a whole design; what a component chooses, it declares with its meaning."""
 
 KINDS = {"strength": "strength", "geometry": "geometry", "decay": "decay", "stability": "stability margin", "bound": "bounds"}
-PEAKS = {
-    "linkage_torque": "torque about the strut axis",
-    "yaw_angle": "yaw angle",
-    "damper_stroke": "damper stroke to one side",
-    "damper_force": "damper force",
-    "spring_force": "force at the tip of spring or arm",
-}
-"""What the peaks of the limit event are called."""
-
 NAMES = {"lower_lug_height": "height of the lower torque-link hinge above the axle"}
 """Keys that do not say what they are."""
 
@@ -78,12 +68,42 @@ def asked(study: Study) -> list[str]:
         f"{study.damper.topology}: {layout_words(study)}",
         f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speeds}, at {loads}.",
     ]
+    if required.damping_ratio is not None:
+        found.append(f"The yaw mode has at least {100 * required.damping_ratio:.3g}\u00a0% of critical damping at all of them.")
     if required.decay is not None:
         found.append(
             f"After a disturbance the yaw angle falls to {required.decay.ratio:.3g} within {required.decay.cycles} cycles, "
             "at every speed, by the nonlinear model."
         )
     return found
+
+
+def assumptions(study: Study, result: DesignResult) -> list[str]:
+    """What the numbers of a page take for granted, a sentence each.
+
+    Parameters
+    ----------
+    study : Study
+    result : DesignResult
+    """
+    tyre, loads, model = study.tyre, study.loads, study.mass
+    largest, bulk = (" ".join(shown(*number)) for number in ((max(study.envelope.loads), "N"), (model.bulk_modulus, "Pa")))
+    found = [
+        "Rigid airframe, constant vertical load, straight rolling at constant speed.",
+        f"Tyre: law {tyre.law} on the contact line {tyre.contact.contact}.",
+    ]
+    found += [
+        f"loads.{key} is not given; {largest}, the largest vertical load of the envelope, stands in its place."
+        for key in ("landing_vertical", "static_reaction")
+        if getattr(loads, key) is None
+    ]
+    if study.damper.has_sized_parts():
+        found.append(
+            f"Bulk modulus of the oil {bulk}, {model.damper_fixed_mass:g} kg of the damper that no size changes, and the "
+            "proportions of eyes and pins (mass.lug) are typical where the study does not give them."
+        )
+    found += [f"{words[:1].upper()}{words[1:]}." for words in result.rests_on]
+    return [*found, "Mass and strength follow the sizing rules of the study page: estimates for comparison, no stress report."]
 
 
 def _range(values: Sequence[float], unit: str, ends: bool) -> str:
@@ -163,26 +183,6 @@ def decided_by(result: DesignResult) -> str:
         return ""
     parts = [f"{KINDS.get(kind, kind)} {weight:.2g}\u00a0%" for kind, weight in result.decided_by.items()]
     return f"If the limits of one kind were eased by 1\u00a0%, the mass would fall by: {', '.join(parts)}."
-
-
-def load_rows(study: Study, result: DesignResult) -> list[Line]:
-    """What the parts must bear in the limit event: quantity, value, unit."""
-    lines = []
-    for name, value in result.limit_event.items():
-        lines.append(Line((PEAKS.get(name, name.replace("_", " ")), *shown(value, unit_of_name(name)))))
-    speed = damper_speed(study, result)
-    if speed is not None:
-        lines.append(Line(("damper speed", *shown(speed, "m/s"))))
-    return lines
-
-
-def size_rows(found: Sequence[Size]) -> list[Line]:
-    """Sizes of parts: part, what, value, unit, margin of safety; what has no margin left is strong."""
-    lines = []
-    for size in found:
-        margin = "" if size.margin is None else "0" if abs(size.margin) < 5e-4 else f"{size.margin:+.3g}"
-        lines.append(Line((size.part, size.words, *shown(size.value, size.unit), margin), margin == "0"))
-    return lines
 
 
 def damping_rows(found: Sequence[LeastDamping]) -> list[Line]:

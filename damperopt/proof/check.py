@@ -91,8 +91,8 @@ def check_damping(study: Study, design: Mapping[str, float], model: LinearModel 
     Returns
     -------
     tuple of float
-        Ratio, speed [m/s], load [N]; the mode is the oscillation in which the yaw angle moves most for its rate's share of all
-        rates of angles, found anew at each point.
+        Ratio, speed [m/s], load [N]; the mode is the oscillation in whose participation factors angle and rate of yaw have the
+        largest share, found anew at each point.
     """
     gear, envelope = (model or LinearModel(study)).at(design), study.envelope
     angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
@@ -101,9 +101,9 @@ def check_damping(study: Study, design: Mapping[str, float], model: LinearModel 
     for load in envelope.loads:
         for V, A in zip(speeds, gear.matrices(speeds, load), strict=True):
             roots, modes = np.linalg.eig(A)
-            unit = np.eye(len(A))[[angle, rate]]
-            shares = np.abs(np.linalg.solve(modes, unit.T)) * np.abs(modes[[angle, rate]]).T  # of a pure yaw, in each mode
-            found = [(shares[i].sum(), -roots[i].real / abs(roots[i])) for i in range(len(roots)) if roots[i].imag > 0]
+            parts = np.abs(np.linalg.solve(modes, np.eye(len(A)))) * np.abs(modes).T  # of each state, in each mode
+            shares = parts[:, [angle, rate]].sum(axis=1) / parts.sum(axis=1)
+            found = [(shares[i], -roots[i].real / abs(roots[i])) for i in range(len(roots)) if roots[i].imag > 0]
             if found and max(found)[1] < least[0]:
                 least = (float(max(found)[1]), float(V), load)
     return least

@@ -8,6 +8,8 @@ __all__ = ["as_written", "axis_label", "rounded", "scale", "shown", "unit_text",
 
 _SCALES: dict[str, tuple[str, float]] = {
     "m": ("mm", 1e3),
+    "m^2": ("mm^2", 1e6),
+    "m^3": ("cm^3", 1e6),
     "m^4": ("mm^4", 1e12),
     "rad": ("deg", 57.29577951308232),
     "rad/s": ("deg/s", 57.29577951308232),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .linear import LinearGear
+from .gear import LinearGear
 
 __all__ = ["yaw_mode", "yaw_modes"]
 
@@ -28,8 +28,10 @@ def yaw_mode(A: np.ndarray, angle: int, rate: int) -> tuple[complex, np.ndarray,
     """
     roots, right = np.linalg.eig(A)
     left = np.linalg.inv(right)
-    # participation of both states of yaw, which no unit of a state changes
-    part = np.abs(right[angle] * left[:, angle]) + np.abs(right[rate] * left[:, rate])
+    # participation of both states of yaw, which no unit of a state changes, in that of all: where two real roots meet and part
+    # as a pair, all of them grow without bound
+    shares = np.abs(right.T * left)
+    part = (shares[:, angle] + shares[:, rate]) / shares.sum(axis=1)
     part[roots.imag <= 0] = -1.0
     i = int(part.argmax())
     s = complex(roots[i]) if part[i] >= 0 else complex(np.nan, np.nan)
@@ -55,8 +57,16 @@ def yaw_modes(gear: LinearGear, speeds: Any, loads: Any) -> np.ndarray:
     >>> import damperopt
     >>> gear = damperopt.linear_gear(damperopt.load("configs/nose_gear_thota.yaml"))
     >>> s = yaw_modes(gear, [40.0], 150e3)[0]
-    >>> round(s.real, 3), round(s.imag, 2)
-    (1.32, 70.88)
+    >>> f"{s:.2f}"
+    '1.32+70.87j'
     """
-    angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
-    return np.array([yaw_mode(A, angle, rate)[0] for A in gear.matrices(speeds, loads)])
+    roots, shares = gear.modes(speeds, loads)
+    names = [state.name for state in gear.principal]
+    part = shares[:, names.index("yaw_angle")] + shares[:, names.index("yaw_rate")]
+    # a line with memory has roots of its own without end; those of the gear are the rightmost, as many as without it
+    last = np.sort(roots.real, axis=1)[:, -min(len(names), roots.shape[1])][:, None]
+    part[(roots.imag <= 0) | (roots.real < last - 1e-9 * np.abs(last))] = -1.0
+    top = part.argmax(axis=1)[:, None]
+    found = np.take_along_axis(roots, top, axis=1)[:, 0]
+    found[np.take_along_axis(part, top, axis=1)[:, 0] < 0] = complex(np.nan, np.nan)
+    return found

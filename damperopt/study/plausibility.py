@@ -91,7 +91,8 @@ class Answer:
         """Of a result; the frequencies of the yaw mode come beside it."""
         parts = {} if result.mass is None else result.mass.parts
         stroke = next((c.value for c in result.constraints if c.name == "working_stroke"), None)
-        damper = parts.get("damper"), result.limit_event.get("damper_force"), result.derived.get("rod_diameter")
+        rod = (result.derived | result.design).get("rod_diameter")
+        damper = parts.get("damper"), result.limit_event.get("damper_force"), rod
         return cls(parts, *damper, stroke, yaw_frequencies, result.constraints)
 
 

@@ -205,15 +205,15 @@ def test_planar_levers_are_those_of_the_members_from_the_top(study):
 
 
 def test_members_are_drawn_from_end_to_end(study):
-    """In both views, and each part once in the legend."""
+    """In every view, and each part once in the legend."""
     members = study.damper.members(study.start)
     if not members:
         return
     drawn = linkage(study.damper, study.start)
-    for axis, across in zip(drawn.axes, (2, 1), strict=True):
+    for axis, (i, j) in zip(drawn.axes, ((0, 2), (0, 1), (1, 2)), strict=True):
         lines = [np.round(line.get_xydata(), 9).tolist() for line in axis.lines]
         for member in members:
-            ends = [[1e3 * float(point[0]), 1e3 * float(point[across])] for point in (member.start, member.end)]
+            ends = [[1e3 * float(point[i]), 1e3 * float(point[j])] for point in (member.start, member.end)]
             assert np.round(ends, 9).tolist() in lines, f"{member.name} is not drawn"
     (legend,) = drawn.legends
     words = [text.get_text() for text in legend.get_texts()]

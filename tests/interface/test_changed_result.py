@@ -43,6 +43,8 @@ UNREADABLE = {
     "verification.passed": False,
     "status": "infeasible",
     "schema_version": 3,
+    "verdict": "refuted",
+    "certificate.counterexample": [20.0, 150e3],
 }
 
 

@@ -53,10 +53,11 @@ def test_optimise_writes_a_complete_run_folder(configs, tmp_path):
     assert {f.name for f in folder.iterdir()} == FILES
     assert (folder / "config.yaml").read_bytes() == (configs / "minimal.yaml").read_bytes()
     result = json.loads((folder / "result.json").read_text())
-    assert result["schema_version"] == 1
+    assert (result["schema_version"], result["verdict"]) == (2, "proved")
     assert result["status"] == "solved"
     assert result["mass"]["total"] == pytest.approx(sum(result["mass"]["parts"].values()))
-    assert set(result["design"]) == {"c_lambda", "k_lambda", "L", "gamma"}
+    sizes = {"A_link", "A_piston", "rod_diameter", "s_damper"}  # of the elastic parts
+    assert set(result["design"]) == {"c_lambda", "k_lambda", "L", "gamma", *sizes}
     assert result["certificate"]["proved"]
     assert result["verification"]["passed"]
     assert len(result["starts"]) == 16

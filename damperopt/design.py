@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from .errors import ConfigError
+from .errors import ConfigError, Unfinished
 from .motion.exact import ExactSimulator
 from .optimum.answer import (
     SAME_MASS,
@@ -19,6 +19,7 @@ from .optimum.answer import (
     infeasible_message,
     local_optima,
     not_checked,
+    nothing_yet,
     start_result,
 )
 from .optimum.diagnose import diagnose
@@ -30,6 +31,7 @@ from .optimum.problem import DesignProblem
 from .optimum.said import said_of
 from .optimum.sensitivity import sensitivities
 from .optimum.solve import NlpSolver
+from .optimum.stock import StockSearch, of_chosen_sizes, of_stock
 from .proof.certify import certify
 from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
@@ -90,21 +92,36 @@ def optimise(
     Returns
     -------
     DesignResult
-        `status` says whether it is solved (and verified), infeasible or failed; nothing is raised for those.
+        `status` says whether it is solved (and verified), infeasible or failed; nothing is raised for those. Of a study with
+        sizes that exist the lightest design of these, with what it costs in `stock`; its `config` is the study with them.
 
     Raises
     ------
     ConfigError
-        If the layout has no design variables (topology ``rotational``).
+        If the layout has no design variables (topology ``rotational``), or no size that exists fits its bounds.
+    Unfinished
+        If the search among sizes that exist is interrupted, with the optimum of any size.
     """
     combinations(study, [], [])  # refuses what cannot be optimised
+    listed = study.available is not None or study.catalogue is not None
+    search = StockSearch(study, _proved_alone) if listed else None
     clock, started = time.perf_counter(), datetime.now(UTC).isoformat(timespec="seconds")
     solver = NlpSolver(DesignProblem(study))
     with executor(workers) as pool, _bar(study, progress is True) as shown:
         outcomes = run_starts(solver, pool, shown if isinstance(progress, bool) else progress)
-    result = _answer(solver, outcomes)
+    result, stopped = _answer(solver, outcomes), False
+    if search is not None:
+        result, stopped = of_stock(study, search, result)
     provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
-    return result.model_copy(update={"provenance": provenance, "config": study.model_dump(mode="json")})
+    config = of_chosen_sizes(study, result).model_dump(mode="json")
+    result = result.model_copy(update={"provenance": provenance, "config": config})
+    if stopped:
+        raise Unfinished(result)
+    return result
+
+
+def _proved_alone(solver: NlpSolver, found: EnvelopeSolution) -> DesignResult:
+    return _answer(solver, [StartOutcome(0, found)])
 
 
 @contextmanager
@@ -211,17 +228,7 @@ def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
     problem, study = solver.problem, solver.problem.study
     starts = tuple(start_result(outcome.index, outcome.found) for outcome in outcomes)
     solved = [outcome.found for outcome in outcomes if outcome.found.solved]
-    base = DesignResult(
-        status="failed",
-        message="",
-        study=study.name,
-        topology=study.damper.topology,
-        geometry=study.damper.geometry,
-        material=study.material.name,
-        stability_margin=study.required.stability_margin,
-        starts=starts,
-        local_optima=local_optima(solved),
-    )
+    base = nothing_yet(study).model_copy(update={"starts": starts, "local_optima": local_optima(solved)})
     if not solved:
         diagnosis = diagnose(solver, starting_designs(problem)[:DIAGNOSED])
         if diagnosis.infeasibility:

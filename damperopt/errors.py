@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["CertificateError", "ConfigError", "DamperoptError", "Interrupted", "OutputError"]
+from typing import Any
+
+__all__ = ["CertificateError", "ConfigError", "DamperoptError", "Interrupted", "OutputError", "Unfinished"]
 
 
 class DamperoptError(Exception):
@@ -41,3 +43,11 @@ class OutputError(DamperoptError):
 
 class CertificateError(DamperoptError):
     """The exact certificate cannot be formed for this model (it is never merely 'not stable')."""
+
+
+class Unfinished(KeyboardInterrupt):
+    """The user stopped a search that had something to keep: its `result`."""
+
+    def __init__(self, result: Any):
+        self.result = result
+        super().__init__("interrupted")

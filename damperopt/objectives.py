@@ -12,7 +12,7 @@ from typing import Any
 
 from .errors import ConfigError
 from .ports.linkage import Linkage
-from .ports.sizing import LimitEvent, Size, Sized
+from .ports.sizing import Capacity, LimitEvent, Size, Sized
 from .strength.limit_event import limit_event
 from .strength.sizes import RELAXED, member_sizes
 
@@ -32,12 +32,15 @@ class SizedLayout:
         Sizes that the masses hang on, to be chosen.
     needed_length : Expr or None
         Pin-to-pin length that the damper needs [m].
+    capacities : tuple of Capacity
+        Of a damper of given size.
     """
 
     event: LimitEvent
     masses: Mapping[str, Any]
     sizes: tuple[Size, ...]
     needed_length: Any
+    capacities: tuple[Capacity, ...] = ()
 
 
 def sized_layout(study: Any, design: Mapping[str, Any], linkage: Linkage, load: Any, factors: Any) -> SizedLayout:
@@ -71,4 +74,5 @@ def sized_layout(study: Any, design: Mapping[str, Any], linkage: Linkage, load: 
             f"damper.kind: '{study.damper.kind}' has no mass model; allowed: a kind that sizes its parts (or 'analyse')"
         )
     masses = {**study.damper.masses(design, event, study), **damper.masses}
-    return SizedLayout(event, masses, (*member_sizes(study, design, event), *damper.sizes), damper.length)
+    sizes = (*member_sizes(study, design, event), *damper.sizes)
+    return SizedLayout(event, masses, sizes, damper.length, damper.capacities)

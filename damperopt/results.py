@@ -16,6 +16,7 @@ from .load_rows import LoadRow, MarginRow
 from .older_results import completed
 from .reading import MOST_RESULT_BYTES, printable, text_of
 from .search_rows import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
+from .stock_rows import StockCandidate, StockResult
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -33,6 +34,8 @@ __all__ = [
     "Relaxation",
     "Sensitivity",
     "StartResult",
+    "StockCandidate",
+    "StockResult",
     "Verification",
     "load_result",
 ]
@@ -269,6 +272,7 @@ class DesignResult(_Record):
     decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
+    stock: StockResult | None = None
     starts: tuple[StartResult, ...] = ()
     local_optima: tuple[LocalOptimum, ...] = ()
     provenance: Provenance | None = None

@@ -8,7 +8,8 @@ from rich.console import Console
 from rich.markup import escape
 
 from ..output.margins import critical_rows, margin_words
-from ..results import DesignResult
+from ..results import DesignResult, StockResult
+from ..stock_rows import candidate_cells, stock_words
 from ..study.components import unit_of_name
 from ..study.scope import covers
 from ..study.study import Study
@@ -31,6 +32,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     mass, worst, certificate, check = result.mass, result.stability, result.certificate, result.verification
     if mass is None or worst is None or certificate is None or check is None:
         console.print(escape(result.message), soft_wrap=True)
+        _show_stock(console, result.stock)
         return
     parts = ", ".join(f"{name} {m:.2f}" for name, m in mass.parts.items())
     console.print(f"[bold]{mass.total:.3f} kg[/] = {parts}")
@@ -40,6 +42,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     for name, value in (result.design | result.derived).items():
         table.add_row(name, *number_and_unit(value, unit_of_name(name, result.units)))
     console.print(table)
+    _show_stock(console, result.stock)
     table = plain_table("constraint", "value", "limit", "unit", "kg per unit of the limit")
     for c in result.constraints:
         style = "bold" if c.active else "dim"
@@ -97,6 +100,23 @@ def _show_loads(console: Console, result: DesignResult) -> None:
         rest = f"; of all other parts above {AMPLE:+g}" if critical[-1].value >= AMPLE else ""
         console.print(f"Least margins of safety: {escape(least)}{rest}", soft_wrap=True)
         console.print(escape("; ".join(result.rests_on)), soft_wrap=True, style="dim")
+
+
+SHOWN_CANDIDATES = 8
+"""Rows of sizes that exist; result.json and the report have all."""
+
+
+def _show_stock(console: Console, stock: StockResult | None) -> None:
+    """Sizes that exist: what was chosen, what it costs, and what became of the others."""
+    if stock is None:
+        return
+    console.print(escape(stock_words(stock)), soft_wrap=True)
+    for row in stock.candidates[:SHOWN_CANDIDATES]:
+        sizes, mass, outcome = candidate_cells(row)
+        line = f"{mass or '-':>10}  {sizes}: {outcome}"
+        console.print(escape(line), soft_wrap=True, style="bold" if row.outcome == "chosen" else "dim")
+    if (more := len(stock.candidates) - SHOWN_CANDIDATES) > 0:
+        console.print(f"and {more} more in result.json", style="dim")
 
 
 def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..errors import Interrupted
+from ..errors import Interrupted, Unfinished
 from .shared import ConfigArgument, OutputOption, err, out, progress, workers_for
 
 __all__ = ["optimise"]
@@ -29,6 +29,7 @@ def optimise(
     Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
     """
     from ..design import combinations, optimise_each, rank
+    from ..optimum.stock import of_chosen_sizes
     from ..output import write_report
     from ..output.folder import run_folder, write_run
     from ..output.gallery import write_design
@@ -52,13 +53,16 @@ def optimise(
         try:
             for result in optimise_each(studies, workers=workers or workers_for(studies), progress=report, config_file=file):
                 results.append(result)
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as stopped:
+            if isinstance(stopped, Unfinished):
+                results.append(stopped.result)
             if not results:
                 raise Interrupted("interrupted; nothing was finished, nothing was written") from None
             interrupted = True
 
     ordered = rank(results)
     by_combination = {(str(s.damper.topology), s.material.name): s for s in studies}
+    answered = [of_chosen_sizes(by_combination[r.topology, r.material], r) for r in ordered]
 
     def write(place: Path) -> None:
         shutil.copyfile(file, place / "config.yaml")
@@ -68,7 +72,7 @@ def optimise(
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(file.parent / named, copy)
         if len(studies) == 1:
-            write_design(place, studies[0], ordered[0], figures)
+            write_design(place, answered[0], ordered[0], figures)
             if figures:
                 write_report(place)
             return
@@ -77,18 +81,23 @@ def optimise(
         for position, result in enumerate(ordered, 1):
             own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
             own.mkdir()
-            write_design(own, by_combination[result.topology, result.material], result, figures and position == 1)
+            write_design(own, answered[position - 1], result, figures and position == 1)
         if figures:
             write_report(place)
 
     write_run(folder, write)  # before anything is shown: a closed pipe must not cost the results
     if len(studies) == 1:
-        show_design(out, ordered[0], studies[0])
+        show_design(out, ordered[0], answered[0])
     else:
         show_ranking(out, ordered)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
     if interrupted:
-        err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored")
+        searched = (
+            ""
+            if all(result.stock is None or result.stock.finished for result in results)
+            else ("; of the last, sizes that exist were not searched to the end")
+        )
+        err.print(f"interrupted: {len(results)} of {len(studies)} combinations were finished and are stored{searched}")
         raise typer.Exit(Interrupted.exit_code)
     codes = {result.exit_code for result in results}
     raise typer.Exit(4 if 4 in codes else 0 if 0 in codes else 3)

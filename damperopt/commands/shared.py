@@ -211,6 +211,10 @@ def _with_design(study: Study, result: DesignResult, file: Path, source: Path) -
         changes["damper__kind"] = kind
     older = _as_it_was(study, result)
     changes |= {key.replace(".", "__"): value for key, value in older.items()}
+    if result.stock is not None:
+        changes |= {path.replace(".", "__"): value for path, value in result.stock.changes.items()}
+        if "damper" in changes:  # the whole block, of a bought damper
+            changes = {path: value for path, value in changes.items() if not path.startswith("damper__")}
     try:
         changed = study.replace(**changes)
     except ConfigError as error:

@@ -170,6 +170,16 @@ class Damper(Record):
         """
         return None
 
+    def piston(self, design: Mapping[str, Expr]) -> Expr | None:
+        """Area of the piston of a cylinder whose sizes are chosen one by one [m^2]; None: there is none.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        """
+        return None
+
     def leaves_out(self) -> tuple[str, ...]:
         """What this model of a damper does not hold, in words."""
         return ()

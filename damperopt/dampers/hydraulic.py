@@ -10,9 +10,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from ..expressions.calculus import Expr, sqrt, symbol
 from ..expressions.corners import Corners
 from ..ports.linkage import Compliant
-from ..ports.sizing import Force, LimitEvent, Size, Sized
+from ..ports.sizing import Capacity, Force, LimitEvent, Size, Sized
 from ..quantities.named import DesignVariable
-from ..quantities.record import Record, SeriesStiffness
+from ..quantities.record import Length, Record, SeriesStiffness
 from ..quantities.units import Quantity
 from ..strength.cylinder import (
     bore,
@@ -56,6 +56,8 @@ class Hydraulic(Damper):
     """Its temperature; left out: that at which the damping is given."""
     series_stiffness: SeriesStiffness | None = None
     """Of oil column, rod and brackets, in series with the damper [N/m]."""
+    bore: Length | None = None
+    """Of the cylinder, where it is given [m]; the area of the piston then follows from the rod and is no design variable."""
 
     def force(
         self,
@@ -100,35 +102,51 @@ class Hydraulic(Damper):
 
     def sizes(self) -> tuple[DesignVariable, ...]:
         """Piston, rod and stroke, where the stiffness of oil column and rod comes from them."""
-        return Hydraulic.SIZES if self.is_sized("damper") else ()
+        if not self.is_sized("damper"):
+            return ()
+        return Hydraulic.SIZES if self.bore is None else (Hydraulic.ROD, Hydraulic.STROKE)
+
+    def piston(self, design: Mapping[str, Expr]) -> Expr | None:
+        """A_piston, or what the rod leaves of a given bore; None where neither is chosen."""
+        if self.bore is None:
+            return design["A_piston"] if self.is_sized("damper") else None
+        rod = design.get("rod_diameter")
+        return None if rod is None else math.pi / 4 * (self.bore**2 - rod**2)
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
         """Oil column and rod."""
         if not self.is_sized("damper"):
             return ()
         model, own = study.mass, design["s_damper"]
-        oil = oil_stiffness(design["A_piston"], own, model)
+        oil = oil_stiffness(self.piston(design), own, model)
         rod = rod_stiffness(design["rod_diameter"], 2 * own + model.dead_length, model)
         return Compliant("damper", oil), Compliant("damper", rod)
 
     def parts(self, event: LimitEvent, model: Any) -> Sized:
         """A cylinder with rod, caps and oil; its sizes meet several limits and are chosen by the optimiser."""
+        least, torque = piston_area(event, model), ("loads",)
+        relaxed = ("mass.working_pressure", *torque)
         if not self.is_sized("damper"):
-            return self._cylinder(event, model, symbol("rod_diameter"), piston_area(event, model))
-        area, stroke = event.design["A_piston"], event.design["s_damper"]
-        sized = self._cylinder(replace(event, stroke=stroke), model, event.design["rod_diameter"], area)
-        torque = ("loads",)
-        chosen = (
-            Size("A_piston", "m^2", area, {"piston_pressure": (piston_area(event, model), ("mass.working_pressure", *torque))}),
-            Size("s_damper", "m", stroke, {"damper_stroke": (event.stroke, torque)}),
-        )
+            rod = symbol("rod_diameter")
+            area = least if self.bore is None else math.pi / 4 * (self.bore**2 - rod**2)
+            return self._cylinder(event, model, rod, area, () if self.bore is None else self._pressed(area, least, relaxed))
+        area, stroke = self.piston(event.design), event.design["s_damper"]
+        chosen = [Size("s_damper", "m", stroke, {"damper_stroke": (event.stroke, torque)})]
+        if self.bore is None:
+            chosen.insert(0, Size("A_piston", "m^2", area, {"piston_pressure": (least, relaxed)}))
+        given = () if self.bore is None else self._pressed(area, least, relaxed)
+        sized = self._cylinder(replace(event, stroke=stroke), model, event.design["rod_diameter"], area, given)
         masses = {part: mass + model.damper_fixed_mass for part, mass in sized.masses.items()}
-        return Sized(masses, (*sized.sizes, *chosen), sized.length)
+        return replace(sized, masses=masses, sizes=(*sized.sizes, *chosen))
 
-    def _cylinder(self, event: LimitEvent, model: Any, diameter: Expr, area: Expr) -> Sized:
+    def _cylinder(self, event: LimitEvent, model: Any, diameter: Expr, area: Expr, capacities: tuple[Capacity, ...]) -> Sized:
         rod = Size("rod_diameter", "m", diameter, rod_diameters(event, model), start=0.02, lower=1e-5, upper=10.0)
         length = rod_length(event, model) + event.stroke + bore(area, diameter)
-        return Sized({"damper": cylinder_mass(event, model, diameter, area)}, (rod,), length)
+        return Sized({"damper": cylinder_mass(event, model, diameter, area)}, (rod,), length, capacities)
+
+    def _pressed(self, area: Expr, least: Expr, relaxed: tuple[str, ...]) -> tuple[Capacity, ...]:
+        """The given bore under the working pressure."""
+        return (Capacity("piston_pressure", "m^2", area, least, ("damper.bore", *relaxed)),)
 
     def leaves_out(self) -> tuple[str, ...]:
         """The oil column and its temperature, where they are not given."""

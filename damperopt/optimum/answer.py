@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..results import ConstraintResult, LocalOptimum, Relaxation, StartResult
+from ..results import ConstraintResult, DesignResult, LocalOptimum, Relaxation, StartResult
 from ..study.components import unit_of_name
 from ..study.study import Study
 from .exchange import EnvelopeSolution
@@ -18,7 +18,9 @@ __all__ = [
     "decided_by",
     "infeasible_message",
     "local_optima",
+    "missing_words",
     "not_checked",
+    "nothing_yet",
     "start_result",
 ]
 
@@ -155,6 +157,19 @@ def not_checked(study: Study) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def nothing_yet(study: Study) -> DesignResult:
+    """What a result says before anything is found."""
+    return DesignResult(
+        status="failed",
+        message="",
+        study=study.name,
+        topology=study.damper.topology,
+        geometry=study.damper.geometry,
+        material=study.material.name,
+        stability_margin=study.required.stability_margin,
+    )
+
+
 def start_result(index: int, found: EnvelopeSolution) -> StartResult:
     """What became of one start."""
     solution = found.solution
@@ -183,11 +198,15 @@ def local_optima(solved: Sequence[EnvelopeSolution]) -> tuple[LocalOptimum, ...]
 
 def infeasible_message(shortfalls: Sequence[Relaxation], alone: Sequence[Relaxation]) -> str:
     """What is missing, and what would be enough on its own."""
-    missing = "; ".join(_short(r) for r in shortfalls)
-    text = f"no design was found that meets the requirements. Nearest: {missing}."
+    text = f"no design was found that meets the requirements. Nearest: {missing_words(shortfalls)}."
     if alone:
         text += " Enough on its own: " + "; or ".join(_enough(r) for r in alone) + "."
     return text
+
+
+def missing_words(shortfalls: Sequence[Relaxation]) -> str:
+    """What is missing, and by how much."""
+    return "; ".join(_short(r) for r in shortfalls)
 
 
 def _short(r: Relaxation) -> str:

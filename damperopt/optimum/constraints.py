@@ -79,6 +79,7 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
+    blocks += [Constraint(c.name, c.asked, c.has, False, c.unit, c.relaxed_by, ratio=True) for c in sized.capacities]
     if not study.damper.ROTARY:  # which has no apex
         least_stroke = required.stroke_ratio * required.apex_clearance
         relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")

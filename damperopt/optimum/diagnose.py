@@ -52,7 +52,7 @@ class _Elastic:
     load: float
 
 
-def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagnosis:
+def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]], among: Sequence[str] = ()) -> Diagnosis:
     """Least relaxation of a study for which no start has led to a design.
 
     Parameters
@@ -60,6 +60,8 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
     solver : NlpSolver
     starts : sequence of mapping
         Designs to start from, beside the steadiest layouts; the best outcome counts.
+    among : sequence of str
+        Constraints that may give way; none: all, and each that would be enough on its own is looked for too.
 
     Returns
     -------
@@ -72,27 +74,27 @@ def diagnose(solver: NlpSolver, starts: Sequence[Mapping[str, float]]) -> Diagno
     """
     if solver.problem.study.required.decay is not None:
         rest = NlpSolver(DesignProblem(solver.problem.study.replace(**_without_decay(solver.problem))))
-        found = diagnose(rest, starts)
+        found = diagnose(rest, starts, among)
         if found.feasible_design is None:
             return found
         return _decay_out_of_reach(solver, [found.feasible_design, *steady_designs(solver.problem, STEADY)])
     starts = [*steady_designs(solver.problem, STEADY), *starts]
     everything = (*solver.problem.constraint_names, _STABILITY)
-    least = _least(solver, starts, everything)
+    least = _least(solver, starts, tuple(among) or everything)
     if least is None:
         return Diagnosis(None, None)
     if max(least.slacks.values()) < ENOUGH:
         return Diagnosis(least.design, None)
-    each = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything}
-    alone = {name: elastic for name, elastic in each.items() if elastic is not None}
+    each = {name: _least(solver, [least.design, *starts[:1]], (name,)) for name in everything if not among}
+    enough = {name: elastic for name, elastic in each.items() if elastic is not None}
     # the elastic program has local optima: one relaxation alone may turn out cheaper than what it found for all
-    least = min([least, *alone.values()], key=lambda elastic: elastic.price)
+    least = min([least, *enough.values()], key=lambda elastic: elastic.price)
     short = [name for name, slack in least.slacks.items() if slack > ENOUGH]
     return Diagnosis(
         None,
         Infeasibility(
             shortfalls=tuple(_relaxation(solver, least, name) for name in short),
-            alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in alone.items()),
+            alone_enough=tuple(_relaxation(solver, elastic, name) for name, elastic in enough.items()),
         ),
     )
 

@@ -110,8 +110,7 @@ def margins(study: Study, design: Mapping[str, float], peaks: Mapping[str, float
     for case, loads in cases.items():
         for member in _each_part(study, design):
             yield from _of_member(study, member, loads, case)
-        if "A_piston" in design:
-            yield from _of_damper(study, design, loads, case)
+        yield from _of_damper(study, design, loads, case)
     for member in _each_part(study, design):
         yield from _fatigue(study, member, event)
 
@@ -171,6 +170,16 @@ def _of_member(study: Study, member: Member, loads: LimitEvent, case: str) -> It
 
 
 def _of_damper(study: Study, design: Mapping[str, float], loads: LimitEvent, case: str) -> Iterator[Margin]:
+    """What a damper of given size can do, and the parts of one that is made."""
+    sized = study.damper.parts(loads, study.mass)
+    for c in sized.capacities if sized is not None else ():
+        yield Margin("damper", c.name.replace("_", " "), case, "limit", float(c.asked), float(c.has), unit=c.unit)
+    area = study.damper.piston(design)
+    if area is not None:
+        yield from _of_cylinder(study, design, area, loads, case)
+
+
+def _of_cylinder(study: Study, design: Mapping[str, float], area: float, loads: LimitEvent, case: str) -> Iterator[Margin]:
     """Rod, cylinder at proof and burst pressure, stroke."""
     model, required = study.mass, study.required
     steel, rod, F = model.damper_material, design["rod_diameter"], float(loads.damper_force)
@@ -178,9 +187,9 @@ def _of_damper(study: Study, design: Mapping[str, float], loads: LimitEvent, cas
     yield from stress_margins("damper rod", case, F / section, steel, (required.limit_factor, required.ultimate_factor))
     column = Column(section, math.pi / 64 * rod**4, length)
     yield from column_margins("damper rod", case, F, column, steel, required.ultimate_factor)
-    D = float(bore(design["A_piston"], rod))
+    D = float(bore(area, rod))
     wall = model.wall_thickness(D, required.limit_factor, required.ultimate_factor)
-    hoop = F / design["A_piston"] * D / (2 * wall)
+    hoop = F / area * D / (2 * wall)
     yield Margin("damper cylinder", "proof pressure", case, "limit", hoop, steel.yield_strength, model.proof_factor)
     burst = steel.yield_strength if steel.ultimate_strength is None else steel.ultimate_strength
     yield Margin("damper cylinder", "burst pressure", case, "ultimate", hoop, burst, model.burst_factor)

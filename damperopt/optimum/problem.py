@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
@@ -18,6 +19,7 @@ from ..dynamics import build
 from ..linkages.elastic import elastic_linkage
 from ..motion.measure import PEAKS
 from ..objectives import sized_layout
+from ..ports.sizing import Size
 from ..quantities.named import DesignVariable
 from ..stability.linear import LinearModel
 from ..stability.screening import Screening
@@ -58,6 +60,9 @@ class DesignProblem:
     ----------
     study : Study
         With one of the layouts that can be optimised.
+    walls : mapping of str to (float, float)
+        Sections of the mass model whose walls are open, as that of ``link_section``, and between what: they are then chosen
+        with the sizes. The plain functions below take them at their least.
 
     Attributes
     ----------
@@ -75,7 +80,7 @@ class DesignProblem:
         (design, data, speed, load) -> A + (margin + reserve) 1, stable iff the margin holds.
     """
 
-    def __init__(self, study: Study):
+    def __init__(self, study: Study, walls: Mapping[str, tuple[float, float]] = MappingProxyType({})):
         self.study, searched = study, searched_study(study)
         self.model = LinearModel(study)
         self.search_model = self.model if searched is study else LinearModel(searched)
@@ -84,17 +89,17 @@ class DesignProblem:
         self.data_names = data_names(study)
         self.load_limit = max(study.envelope.loads)
 
-        symbols = symbolic(searched)
+        symbols, open_walls = symbolic(searched), {key: ca.SX.sym(key) for key in walls}
         dae = build(symbols)
         design = {name: dae.design[i] for i, name in enumerate(self.design_names)}
         load, factors = ca.SX.sym("load_limit"), ca.SX.sym("factors", len(PEAKS))
-        link = elastic_linkage(symbols.study, design)
-        sized = sized_layout(symbols.study, design, link, load, [factors[i] for i in range(len(PEAKS))])
+        made = _with_walls(symbols.study, open_walls)
+        link = elastic_linkage(made, design)
+        sized = sized_layout(made, design, link, load, [factors[i] for i in range(len(PEAKS))])
         parts = sized.masses
-        self.constraints: tuple[Constraint, ...] = tuple(
-            strength(symbols.study, design, sized) + geometry(symbols.study, design, link, sized)
-        )
+        self.constraints: tuple[Constraint, ...] = tuple(strength(made, design, sized) + geometry(made, design, link, sized))
         own_sizes = [size for size in sized.sizes if size.name not in design]
+        own_sizes += [_wall_size(key, symbol, *walls[key]) for key, symbol in open_walls.items()]
         self.size_names = tuple(size.name for size in own_sizes)
         self.units = {v.name: v.unit for v in study.variables} | {size.name: size.unit for size in own_sizes}
         self.part_names = tuple(parts)
@@ -266,3 +271,13 @@ class DesignProblem:
             np.array([v.scale(v.lower) for v in self.variables]),
             np.array([v.scale(v.upper) for v in self.variables]),
         )
+
+
+def _with_walls(study: Any, walls: Mapping[str, ca.SX]) -> Any:
+    """The symbolic study with symbols of their own for the walls of some sections over their outer diameters."""
+    sections = {key: getattr(study.mass, key).model_copy(update={"thickness_ratio": wall}) for key, wall in walls.items()}
+    return study.model_copy(update={"mass": study.mass.model_copy(update=sections)})
+
+
+def _wall_size(section: str, wall: ca.SX, least: float, most: float) -> Size:
+    return Size(f"{section} wall", "1", wall, {"least": (least, ())}, least, least, most)

@@ -146,7 +146,7 @@ class _Layouts:
             "f": mass,
             "g": ca.vertcat(rows, log_c - ca.log(c_psi), ca.log(k_psi) - log_k),
         }
-        options: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
+        options: dict[str, Any] = {"print_time": False, "show_eval_warnings": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
         options |= {"ipopt.max_iter": 60, "ipopt.tol": 1e-5}
         self._problem = problem
         self._solver = ca.nlpsol("layout", "ipopt", nlp, options)

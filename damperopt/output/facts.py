@@ -207,7 +207,8 @@ def _cylinder(study: Study, event: LimitEvent, chosen: Mapping[str, float]) -> l
     rod, model = chosen.get("rod_diameter"), study.mass
     if rod is None:
         return []
-    area, stroke = chosen.get("A_piston", piston_area(event, model)), chosen.get("s_damper", event.stroke)
+    own, stroke = study.damper.piston(chosen), chosen.get("s_damper", event.stroke)
+    area = piston_area(event, model) if own is None else own
     sigma = allowable_stress(model.damper_material, study.required.limit_factor, study.required.ultimate_factor)
     event = replace(event, stroke=stroke)
     least = {name: float(value) for name, (value, _) in rod_diameters(event, model).items()}

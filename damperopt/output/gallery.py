@@ -125,7 +125,8 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     StabilityChart
     """
     assert result.stability is not None
-    damping, spring = study.variable_names[0], study.damper.SPRING or study.variable_names[1]
+    spring = study.damper.SPRING or study.variable_names[1]
+    damping = next(name for name in study.variable_names if name != spring)  # of a bought damper a length of the layout
     c, k = result.design[damping], result.design[spring]
     low, high = study.envelope.speed.min, study.envelope.speed.max
     speeds = sorted({low, float(np.sqrt(low * high)), high})
@@ -134,7 +135,7 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
     least = 0.0 if rigid else c / 100  # without damping a node in series has no equation
     return chart(
         study,
-        (damping, least, 2.5 * c),
+        (damping, *((least, 2.5 * c) if study.damper.KIND.VARIABLES else (0.7 * c, 1.3 * c))),
         (spring, 0.0, 2.5 * k),
         vary=("speed", speeds),
         margin=margin,

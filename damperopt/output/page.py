@@ -14,6 +14,7 @@ from ..errors import ConfigError
 from ..optimum.left_out import left_out_by_number
 from ..results import DesignResult, load_result
 from ..stability.modes import ModeTable, track_modes
+from ..stock_rows import candidate_cells, stock_words
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from . import facts, margins, words
@@ -53,6 +54,8 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         result=best,
         results=results,
         words=words,
+        stock_words=stock_words,
+        candidate_cells=candidate_cells,
         asked=words.asked(study),
         covers=best.covers or covers(study),
         leaves_out=_leaves_out(study, best),

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..expressions.calculus import Expr
 
-__all__ = ["Force", "LimitEvent", "Peaks", "Size", "Sized"]
+__all__ = ["Capacity", "Force", "LimitEvent", "Peaks", "Size", "Sized"]
 
 
 @dataclass(frozen=True)
@@ -112,6 +112,26 @@ class Size:
 
 
 @dataclass(frozen=True)
+class Capacity:
+    """What a part of given size can do, and what the limit event asks of it; expressions.
+
+    Attributes
+    ----------
+    name, unit : str
+    has, asked : Expr
+        Most that it can do, and the least that it must [unit].
+    relaxed_by : tuple of str
+        Key paths that would relax it.
+    """
+
+    name: str
+    unit: str
+    has: Expr
+    asked: Expr
+    relaxed_by: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Sized:
     """A damper sized by the limit event; expressions.
 
@@ -123,8 +143,11 @@ class Sized:
         Sizes to be chosen, that the masses hang on: design variables by their name, or numbers of their own.
     length : Expr or None
         Pin-to-pin length that it needs [m].
+    capacities : tuple of Capacity
+        Of what is given and not chosen.
     """
 
     masses: Mapping[str, Expr]
     sizes: tuple[Size, ...] = ()
     length: Expr = None
+    capacities: tuple[Capacity, ...] = ()

@@ -1,19 +1,14 @@
-"""Sizes that exist: tubes of a stock list, and choices of sizes for several parts by rising mass."""
+"""Sizes that exist: tubes of a stock list."""
 
 from __future__ import annotations
 
-import heapq
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TypeVar
 
 from ..ports.section import Section
 
-__all__ = ["Tube", "at_least", "lightest_first", "tubes"]
-
-T = TypeVar("T")
+__all__ = ["Tube", "tubes"]
 
 
 @dataclass(frozen=True)
@@ -42,15 +37,13 @@ class Tube:
         return f"{1e3 * self.diameter:g} x {1e3 * self.wall:g} mm"
 
 
-def tubes(diameters: Sequence[float], walls: Sequence[float], area: float = 0.0, inertia: float = 0.0) -> tuple[Tube, ...]:
-    """Every tube of a stock list with at least an area and a second moment of area, the lightest first.
+def tubes(diameters: Sequence[float], walls: Sequence[float]) -> tuple[Tube, ...]:
+    """Every tube of a stock list, the lightest first.
 
     Parameters
     ----------
     diameters, walls : sequence of float
         Outer diameters and walls [m]; every wall goes with every diameter that it leaves a bore.
-    area, inertia : float
-        Least of each [m^2], [m^4].
 
     Returns
     -------
@@ -62,44 +55,4 @@ def tubes(diameters: Sequence[float], walls: Sequence[float], area: float = 0.0,
     ['20 x 2 mm', '30 x 2 mm', '30 x 11 mm']
     """
     found = (Tube(diameter, wall) for diameter in diameters for wall in walls if 2 * wall < diameter)
-    wide = (tube for tube in found if tube.area >= area and tube.inertia >= inertia)
-    return tuple(sorted(wide, key=lambda tube: (tube.area, tube.diameter)))
-
-
-def at_least(sizes: Sequence[float], needed: float) -> tuple[float, ...]:
-    """Sizes that are enough, the smallest first."""
-    return tuple(sorted(size for size in sizes if size >= needed))
-
-
-def lightest_first(choices: Mapping[str, Sequence[T]], mass: Callable[[str, T], float]) -> Iterator[dict[str, T]]:
-    """Every way to choose one size for each part, by rising mass of all; made as it is asked for.
-
-    Parameters
-    ----------
-    choices : mapping of str to sequence
-        Sizes by part.
-    mass : callable
-        (part, size) -> mass [kg].
-
-    Yields
-    ------
-    dict
-        Part -> size.
-    """
-    parts = {part: sorted(sizes, key=partial(mass, part)) for part, sizes in choices.items()}
-    if not parts or not all(parts.values()):
-        return
-
-    def total(position: tuple[int, ...]) -> float:
-        return sum(mass(part, sizes[i]) for (part, sizes), i in zip(parts.items(), position, strict=True))
-
-    first = (0,) * len(parts)
-    waiting, seen = [(total(first), first)], {first}
-    while waiting:
-        _, position = heapq.heappop(waiting)
-        yield {part: sizes[i] for (part, sizes), i in zip(parts.items(), position, strict=True)}
-        for j, sizes in enumerate(parts.values()):
-            after = (*position[:j], position[j] + 1, *position[j + 1 :])
-            if after[j] < len(sizes) and after not in seen:
-                seen.add(after)
-                heapq.heappush(waiting, (total(after), after))
+    return tuple(sorted(found, key=lambda tube: (tube.area, tube.diameter)))

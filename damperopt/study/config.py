@@ -72,9 +72,10 @@ def loads(text: str, name: str = "<text>") -> Study:
 
 def files_of(path: str | Path) -> list[str]:
     """Files that a study names and that are read with it, as it names them."""
-    tyre = read(text_of(path), str(path), "the keys of a study").data.get("tyre")
-    named = tyre.get("file") if isinstance(tyre, dict) else None
-    return [named] if isinstance(named, str) else []
+    data = read(text_of(path), str(path), "the keys of a study").data
+    tyre = data.get("tyre")
+    named = [tyre.get("file") if isinstance(tyre, dict) else None, data.get("catalogue")]
+    return [name for name in named if isinstance(name, str)]
 
 
 def is_sweep(text: str, name: str) -> bool:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, ValidationError, ValidationInfo, model_validator
 from pydantic_core import CoreSchema
 
+from ..dampers.bought import CatalogueDamper
 from ..errors import ConfigError
-from ..quantities.record import Damping, Force, Length, Name, Record, SeriesStiffness, quantity_of, refuse
-from ..quantities.units import Quantity, number
+from ..quantities.record import Length, Record, quantity_of, refuse
+from ..quantities.units import number
 from ..reading import printable, quoted, text_of
 
-__all__ = ["CATALOGUE", "Available", "CatalogueDamper", "Judged", "judged", "read_catalogue"]
+__all__ = ["CATALOGUE", "Available", "CatalogueDamper", "read_catalogue"]
 
 MOST_ROWS = 10_000
 
@@ -54,25 +53,6 @@ class _RowsOrFile:
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [{"type": "string", "minLength": 1}, handler(schema)]}
-
-
-class CatalogueDamper(Record):
-    """A damper that can be bought: a row of the catalogue."""
-
-    name: Name
-    """Part number."""
-    c: Damping
-    """Linear damping [N s/m]."""
-    stroke: Length
-    """Usable stroke to one side of the middle [m]."""
-    length: Length
-    """From pin to pin at the middle of the stroke [m]."""
-    force: Force
-    """Largest force at limit load [N]."""
-    mass: Annotated[float, Quantity("kg", above=0, example="3.2 kg")]
-    """With its fluid [kg]."""
-    series_stiffness: SeriesStiffness
-    """Of oil column, rod and eyes [N/m]."""
 
 
 def _from_file(found: Any, info: ValidationInfo) -> Any:
@@ -200,52 +180,3 @@ def _row(line: str, units: dict[str, str], where: str) -> CatalogueDamper:
         return CatalogueDamper.model_validate(block)
     except ValidationError as error:
         raise ConfigError([f"{where}: {e['loc'][0]}: {e['msg']}" for e in error.errors(include_url=False)]) from None
-
-
-@dataclass(frozen=True)
-class Judged:
-    """A damper of the catalogue, and why it does not fit; empty where it does."""
-
-    damper: CatalogueDamper
-    why_not: tuple[str, ...] = ()
-
-
-def judged(
-    catalogue: Iterable[CatalogueDamper],
-    *,
-    force: float = 0.0,
-    stroke: float = 0.0,
-    most_length: float = float("inf"),
-    damping: Sequence[float] = (0.0, float("inf")),
-) -> tuple[Judged, ...]:
-    """Every damper of a catalogue, those that fit first, the lightest first; and why the others do not.
-
-    Parameters
-    ----------
-    catalogue : iterable of CatalogueDamper
-    force : float
-        Largest damper force at limit load [N].
-    stroke : float
-        Largest stroke to one side [m].
-    most_length : float
-        Room from pin to pin [m].
-    damping : sequence of float
-        Least and largest c that are worth a solution [N s/m].
-
-    Returns
-    -------
-    tuple of Judged
-    """
-
-    def reasons(row: CatalogueDamper) -> tuple[str, ...]:
-        least, most = damping
-        found = (
-            (row.force < force, f"carries {row.force / 1e3:.4g} of {force / 1e3:.4g} kN"),
-            (row.stroke < stroke, f"has {1e3 * row.stroke:.4g} of {1e3 * stroke:.4g} mm of stroke"),
-            (row.length > most_length, f"is {1e3 * row.length:.4g} mm long in a room of {1e3 * most_length:.4g} mm"),
-            (not least <= row.c <= most, f"damps with {row.c:.4g} N s/m, outside {least:.4g} to {most:.4g}"),
-        )
-        return tuple(words for fails, words in found if fails)
-
-    all_of_them = (Judged(row, reasons(row)) for row in catalogue)
-    return tuple(sorted(all_of_them, key=lambda one: (bool(one.why_not), one.damper.mass)))

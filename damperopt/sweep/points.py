@@ -11,6 +11,7 @@ import numpy as np
 
 from ..design import optimise
 from ..errors import ConfigError
+from ..optimum.stock import of_chosen_sizes
 from ..provenance import program
 from ..stability.critical import critical_speeds
 from ..stability.linear import linear_gear
@@ -55,7 +56,8 @@ def run_point(study_json: str, run: str, speeds: int, start: Mapping[str, float]
 
 def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> dict[str, Any]:
     result = optimise(_started(study, start))
-    result = result.model_copy(update={"config": study.model_dump(mode="json")})  # the question as it was put
+    made = of_chosen_sizes(study, result)
+    result = result.model_copy(update={"config": made.model_dump(mode="json")})  # the question as it was put
     numbers = dict(result.design) | {name: value for name, value in result.derived.items() if name not in result.design}
     if result.mass is not None:
         numbers |= {"mass": result.mass.total} | {
@@ -65,7 +67,7 @@ def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> 
         numbers["abscissa"] = result.stability.abscissa
     if result.decay is not None:
         numbers["decay_ratio"] = result.decay.ratio
-    modes = _modes(study, result.design, speeds) if result.status == "solved" else None
+    modes = _modes(made, result.design, speeds) if result.status == "solved" else None
     return {
         "status": result.status,
         "message": result.message,

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import damperopt
-from damperopt.strength.stock import Tube, at_least, lightest_first, tubes
-from damperopt.study.stock import judged, read_catalogue
+from damperopt.strength.stock import Tube, tubes
+from damperopt.study.stock import read_catalogue
 
 HEADER = "name, c [N s/m], stroke [mm], length [mm], force [kN], mass [kg], series_stiffness [MN/m]"
 ROW = "one, 4000, 4, 150, 8, 1.9, 20"
@@ -22,36 +22,12 @@ def test_tube_by_hand():
     assert tube.section.thickness_ratio == pytest.approx(0.1)
 
 
-def test_tubes_are_all_that_are_enough_and_the_lightest_is_first():
+def test_tubes_are_all_that_have_a_bore_and_the_lightest_is_first():
     diameters, walls = [0.05, 0.02, 0.03], [0.004, 0.001, 0.012]
-    found = tubes(diameters, walls, area=80e-6, inertia=1e-8)
-    pairs = [Tube(d, t) for d, t in itertools.product(diameters, walls) if 2 * t < d]
-    assert set(found) == {tube for tube in pairs if tube.area >= 80e-6 and tube.inertia >= 1e-8}
+    found = tubes(diameters, walls)
+    assert set(found) == {Tube(d, t) for d, t in itertools.product(diameters, walls) if 2 * t < d}
     assert [tube.area for tube in found] == sorted(tube.area for tube in found)
-    assert Tube(0.02, 0.012) not in tubes(diameters, walls)
-
-
-def test_sizes_that_are_enough():
-    assert at_least([0.04, 0.02, 0.03], 0.025) == (0.03, 0.04)
-    assert at_least([0.02], 0.025) == ()
-
-
-def test_choices_come_by_rising_mass_and_none_is_left_out():
-    choices = {"arm": [3.0, 1.0, 2.5], "link": [0.7, 0.2], "support": [5.0, 4.0, 9.0, 4.4]}
-    found = list(lightest_first(choices, lambda part, size: size * {"arm": 1.0, "link": 2.0, "support": 0.5}[part]))
-    masses = [one["arm"] + 2 * one["link"] + 0.5 * one["support"] for one in found]
-    assert masses == sorted(masses)
-    everything = {tuple(sizes) for sizes in itertools.product(*choices.values())}
-    assert {tuple(one.values()) for one in found} == everything
-    assert len(found) == len(everything)
-
-
-def test_choices_are_made_as_they_are_asked_for():
-    """10^18 ways, of which the first ten are had at once."""
-    many = {f"part {i}": list(range(1000)) for i in range(6)}
-    first = list(itertools.islice(lightest_first(many, lambda part, size: 1.0 + size), 10))
-    assert [sum(one.values()) for one in first] == [0, 1, 1, 1, 1, 1, 1, 2, 2, 2]
-    assert list(lightest_first({"arm": []}, lambda part, size: 0.0)) == []
+    assert Tube(0.02, 0.012) not in found
 
 
 @pytest.fixture
@@ -109,22 +85,6 @@ def test_every_bad_row_is_named(catalogue):
         "2: stroke:",
         "3: force: ",
     ]
-
-
-def test_dampers_that_fit_come_first_and_the_others_say_why(configs):
-    rows = read_catalogue(configs / "catalogue_dampers.csv")
-    assert all(row.name.startswith("invented") for row in rows)
-    found = judged(rows, force=12e3, stroke=5e-3, most_length=0.17, damping=(1e4, 3e4))
-    fitting = [one.damper.name for one in found if not one.why_not]
-    assert fitting == ["invented 14-6", "invented 20-6"]
-    others = {one.damper.name: one.why_not for one in found if one.why_not}
-    assert others["invented 10-4"] == (
-        "carries 8 of 12 kN",
-        "has 4 of 5 mm of stroke",
-        "damps with 4000 N s/m, outside 1e+04 to 3e+04",
-    )
-    assert others["invented 20-9"] == ("is 185 mm long in a room of 170 mm",)
-    assert len(found) == len(rows)
 
 
 def test_the_shipped_study_has_its_catalogue_beside_it(configs, tmp_path, monkeypatch):

@@ -223,7 +223,9 @@ def test_numbers_of_a_study_enter_as_symbols(main_gear):
 def test_two_wheels_share_the_load(main_gear):
     axle = SimpleNamespace(half_track=0.2)
     wheels = [SimpleNamespace(load=75e3)] * 2
-    gear = SimpleNamespace(axle=axle, STATES=(), wheels=lambda x, speed, load: wheels, wheel_radius=0.4, lever=lambda: 0.12)
+    gear = SimpleNamespace(
+        axle=axle, states=lambda: (), wheels=lambda x, speed, load: wheels, wheel_radius=0.4, lever=lambda: 0.12
+    )
     brush = damperopt.load(Path(damperopt.__file__).with_name("starter.yaml"))
     loads, tyre, required = main_gear.loads, brush.tyre, main_gear.requirements
     twin = SimpleNamespace(gear=gear, tyre=tyre, envelope=main_gear.envelope, requirements=required, loads=loads)

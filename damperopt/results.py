@@ -46,13 +46,19 @@ SUM_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """A speed [m/s] and a vertical load [N], with the spectral abscissa there [1/s]."""
+    """A speed [m/s], a vertical load [N] and a factor on the damping, with the spectral abscissa there [1/s]."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
 
     speed: float
     load: float
     abscissa: float
+    damping: float = 1.0
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Speed, load, factor on the damping."""
+        return self.speed, self.load, self.damping
 
 
 @dataclass(frozen=True)
@@ -82,6 +88,10 @@ class Certificate:
         ``proved``, ``refuted`` or ``undecided``.
     frequency : float or None
         Of the root at the counterexample, or where it could not be decided [rad/s].
+    damping : tuple of float or None
+        Ends of the interval of factors on the damping; None: the damping as designed alone.
+    damping_factor : float or None
+        Of the counterexample, with an interval.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
@@ -96,6 +106,13 @@ class Certificate:
     boxes: int = 0
     verdict: Literal["proved", "refuted", "undecided"] | None = None
     frequency: float | None = None
+    damping: tuple[float, float] | None = None
+    damping_factor: float | None = None
+
+    @property
+    def place(self) -> tuple[float, float, float] | None:
+        """Speed, load and damping factor of the counterexample."""
+        return None if self.counterexample is None else (*self.counterexample, self.damping_factor or 1.0)
 
     @property
     def over_a_range(self) -> bool:
@@ -125,6 +142,8 @@ class DecayCheck:
         Largest magnitudes that they show [SI].
     engine : str
         Integrator of the optimiser, and whether a missing C compiler decided that.
+    damping : float
+        Factor on the damping where the ratio is largest.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _FINITE
@@ -139,6 +158,7 @@ class DecayCheck:
     simulations: int
     peaks: dict[str, float]
     engine: str = ""
+    damping: float = 1.0
 
 
 class _Record(BaseModel):

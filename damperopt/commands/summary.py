@@ -72,12 +72,13 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         price = f"{c.shadow_price:.3g}" if c.active else ""
         table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
     console.print(table)
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    times = "" if certificate.damping is None else f", {worst.damping:.4g} times the damping"
+    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN{times}")
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
     loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
     console.print(
         f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
-        f"{certificate.speed[1]:g} m/s, {loads} kN",
+        f"{certificate.speed[1]:g} m/s, {loads} kN{_dampings(certificate)}",
         soft_wrap=True,
     )
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
@@ -106,6 +107,13 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     console.print("Not checked: " + escape("; ".join(result.not_checked)), soft_wrap=True, style="dim")
     if result.status == "failed":
         console.print(f"[bold red]{escape(result.message)}[/]", soft_wrap=True)
+
+
+def _dampings(certificate: Certificate) -> str:
+    """The interval of dampings that a certificate covers."""
+    if certificate.damping is None:
+        return ""
+    return f", every damping from {certificate.damping[0]:.4g} to {certificate.damping[1]:.4g} times that of the design"
 
 
 def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:

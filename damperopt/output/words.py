@@ -51,6 +51,8 @@ PEAKS = {
 }
 """What the peaks of the limit event are called."""
 
+BALLS = "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and load"
+
 NAMES = {"lower_lug_height": "height of the lower torque-link hinge above the axle"}
 """Keys that do not say what they are."""
 
@@ -78,6 +80,9 @@ def asked(study: Study) -> list[str]:
         f"{study.damper.topology}: {layout_words(study)}",
         f"Every mode decays at least as exp(-{required.stability_margin:g} t) at every speed from {speeds}, at {loads}.",
     ]
+    low, high = study.damper.damping_factors()
+    if (low, high) != (1.0, 1.0):
+        found.append(f"All requirements hold for every damping from {low:.3g} to {high:.3g} times that of the design.")
     if required.decay is not None:
         found.append(
             f"After a disturbance the yaw angle falls to {required.decay.ratio:.3g} within {required.decay.cycles} cycles, "
@@ -211,11 +216,17 @@ def certificate(result: DesignResult) -> str:
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",
         "bernstein": "exact Bernstein bounds over rectangles of speed and load",
-        "balls": "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and load",
-    }.get(proof.method.partition(",")[0], proof.method)
+        "bernstein, damping": "exact Bernstein bounds over rectangles of speed and damping, load by load",
+        "balls, damping": "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and "
+        "damping, load by load",
+        "balls, rectangle": BALLS,
+        "balls": BALLS,
+    }.get(proof.method, proof.method)
     speeds = _range(proof.speed, "m/s", True)
     loads = _range(proof.loads, "N", proof.over_a_range)
     where = f"margin {proof.margin:g} 1/s, every real speed from {speeds}, {loads}"
+    if proof.damping is not None:
+        where += f", every damping from {proof.damping[0]:.4g} to {proof.damping[1]:.4g} times that of the design"
     reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
     if not proof.proved:
         return f"NOT proved: {where}. {reason}"

@@ -344,6 +344,7 @@ def _checked(
     mass = float(sum(parts.values()))
     constraints = constraint_results(problem, best, factors)
     weights, warm = decided_by(constraints, mass), damping_over_temperature(study, solution.design)
+    viscous = problem.units.get(study.damper.VISCOUS, "")
     message = f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
     if weights:
         message += f"; the mass is decided by {next(iter(weights))}"
@@ -356,7 +357,7 @@ def _checked(
             "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design, factors), **warm},
             "units": problem.units
             | {"torsional_stiffness": "N m/rad", "torsional_damping": "N m s/rad"}
-            | dict.fromkeys(warm, "N s/m"),
+            | dict.fromkeys(warm, viscous),
             "limit_event": event,
             "mass": MassResult(total=mass, parts=parts),
             "stability": worst,

@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 from pydantic import BaseModel
 
+from .quantities.record import Record
 from .study.study import Study
 
 __all__ = ["SymbolicStudy", "data_names", "data_values", "symbolic"]
@@ -96,4 +97,4 @@ def _numbers(study: Study) -> list[tuple[str, float]]:
 
 
 def _constants(record: BaseModel) -> tuple[str, ...]:
-    return getattr(record, "CONSTANTS", ())
+    return record.constants() if isinstance(record, Record) else ()

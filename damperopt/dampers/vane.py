@@ -15,7 +15,8 @@ from ..quantities.named import DesignVariable
 from ..quantities.record import Length, Record, Stress, refuse
 from ..quantities.units import Quantity
 from ..strength.materials import allowable_stress
-from .base import Context, Damper
+from .base import Context
+from .oil import Oiled, damping_factor
 
 __all__ = ["RotaryOrifice", "Vane"]
 
@@ -29,7 +30,7 @@ class RotaryOrifice(Record):
     """Rate below which the smooth version is rounded [rad/s]."""
 
 
-class Vane(Damper):
+class Vane(Oiled):
     """Rotary vane damper, T = c psi' + c_2 psi' |psi'|, in series with the stiffness of its oil; sized by torque and pressure.
 
     Vanes of height h and width b at the mean radius R displace D = n h b R of oil per radian, so that T = p D.
@@ -39,6 +40,8 @@ class Vane(Damper):
     VARIABLES: ClassVar = (
         DesignVariable("c_vane", "N m s/rad", "$c_v$", "damping of the vane damper about the yaw axis", example="1 kN m s/rad"),
     )
+
+    VISCOUS: ClassVar = "c_vane"
 
     kind: Literal["vane"]
     mean_radius: Length
@@ -77,7 +80,7 @@ class Vane(Damper):
         corners: Corners,
     ) -> Force:
         """T = c psi' + c_2 psi' |psi'|."""
-        c, orifice = design["c_vane"], self.orifice
+        c, orifice = design["c_vane"] * damping_factor(self.oil, context.temperature), self.orifice
         if orifice is None:
             return Force(c * rate)
         return Force(c * rate + orifice.coefficient * rate * corners.magnitude(rate, orifice.smoothing))
@@ -92,7 +95,7 @@ class Vane(Damper):
         corners: Corners,
     ) -> Expr:
         """The positive root of c_2 w^2 + c w = |T|, in the form that also holds for c_2 = 0."""
-        c, T, orifice = design["c_vane"], force, self.orifice
+        c, T, orifice = design["c_vane"] * damping_factor(self.oil, context.temperature), force, self.orifice
         if orifice is None:
             return T / c
         magnitude = corners.magnitude(T, c * orifice.smoothing)
@@ -105,7 +108,8 @@ class Vane(Damper):
     def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
         """c + 8/(3 pi) c_2 omega X, without the oil in series."""
         c_2 = 0.0 if self.orifice is None else self.orifice.coefficient
-        return 0.0, design["c_vane"] + 8 / (3 * math.pi) * c_2 * frequency * amplitude
+        c = design["c_vane"] * damping_factor(self.oil, context.temperature)
+        return 0.0, c + 8 / (3 * math.pi) * c_2 * frequency * amplitude
 
     def parts(self, event: LimitEvent, model: Any) -> Sized:
         """Housing, caps, rotor, vanes, partitions and oil; the height of the vanes meets the pressure."""
@@ -131,6 +135,10 @@ class Vane(Damper):
         return Sized({"damper": steel.density * metal * (1 + model.damper_fittings_fraction) + oil}, (size,))
 
     def leaves_out(self) -> tuple[str, ...]:
-        """The oil, where no displacement is given."""
-        words = () if self.displacement is not None else ("compressibility of the oil (damper.displacement)",)
-        return (*words, "oil that is cold or hot, and cavitation where the relieved chamber runs empty")
+        """The oil, where no displacement or temperature is given."""
+        words = ["cavitation where the relieved chamber runs empty"]
+        if self.displacement is None:
+            words.append("compressibility of the oil (damper.displacement)")
+        if self.oil is None:
+            words.append("oil that is cold or hot (damper.oil)")
+        return tuple(words)

@@ -100,13 +100,15 @@ def where(condition: Expr, yes: Expr, no: Expr) -> Expr:
 
 
 def piecewise(x: Expr, limits: Sequence[float], pieces: Sequence[Callable[[Expr], Expr]]) -> Expr:
-    """A function that is written piece by piece; of a ball that touches several pieces the union of their values.
+    """A continuous function that is written piece by piece.
+
+    It is summed up along x, each piece over its own part: without a choice, so that balls over a limit stay tight.
 
     Parameters
     ----------
     x : Expr
     limits : sequence of float
-        (n,) ascending; from each on the next piece holds.
+        (n,) ascending; from each on the next piece holds, and there both must have one value.
     pieces : sequence of callable
         (n + 1,) of x.
 
@@ -115,21 +117,22 @@ def piecewise(x: Expr, limits: Sequence[float], pieces: Sequence[Callable[[Expr]
     >>> [piecewise(x, [1.0, 2.0], [lambda x: 0.0, lambda x: x - 1, lambda x: 1.0]) for x in (0.5, 1.25, 3.0)]
     [0.0, 0.25, 1.0]
     """
-    if is_symbol(x) or isinstance(x, np.ndarray):
-        value = pieces[-1](x)
-        for limit, piece in zip(limits[::-1], pieces[-2::-1], strict=True):
-            value = where(x < limit, piece(x), value)
-        return value
-    # of numbers one piece is left; of a ball, which is neither below nor above a limit that it holds, those on both sides
-    inside = [
-        piece
-        for low, high, piece in zip([None, *limits], [*limits, None], pieces, strict=True)
-        if not (low is not None and x < low) and not (high is not None and x >= high)
-    ]
-    first, *others = (piece(x) for piece in inside)
-    for other in others:
-        first = first.union(other)
-    return first
+    value = pieces[0](_smaller(x, limits[0]) if limits else x)
+    for k, piece in enumerate(pieces[1:], 1):
+        inside = -_smaller(-x, -limits[k - 1])
+        if k < len(limits):
+            inside = _smaller(inside, limits[k])
+        value = value + (piece(inside) - piece(limits[k - 1]))
+    return value
+
+
+def _smaller(x: Expr, limit: float) -> Expr:
+    """The smaller of two."""
+    if is_symbol(x):
+        return import_module("casadi").fmin(x, limit)
+    if isinstance(x, (np.ndarray, np.generic)):
+        return np.minimum(x, limit)
+    return min(x, limit) if isinstance(x, (int, float)) else x.min(type(x)(limit))
 
 
 def is_symbol(x: Expr) -> bool:

@@ -186,7 +186,7 @@ def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, floa
 def _orifice(study: Study, result: DesignResult, event: LimitEvent) -> list[Size]:
     """Orifice that gives its part of the damping at the reference temperature, for strokes as fast as the limit event's."""
     share, rate = study.damper.orifice_share(), damper_speed(study, result)
-    if not share or rate is None:
+    if not share or rate is None or study.damper.ROTARY:
         return []
     area = float(result.design["A_piston"] if "A_piston" in result.design else piston_area(event, study.mass))
     c = share * result.design[study.damper.VISCOUS]

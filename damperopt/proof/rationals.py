@@ -76,6 +76,8 @@ _OPERATIONS: dict[int, Callable[..., flint.fmpq]] = {
     ca.OP_SQ: lambda a: a * a,
     ca.OP_TWICE: lambda a: a + a,
     ca.OP_FABS: lambda a: max(a, -a),
+    ca.OP_FMIN: min,
+    ca.OP_FMAX: max,
     ca.OP_SIGN: lambda a: flint.fmpq((a > 0) - (a < 0)),
     ca.OP_LT: lambda a, b: _truth(a < b),
     ca.OP_LE: lambda a, b: _truth(a <= b),
@@ -90,6 +92,8 @@ _OPERATIONS: dict[int, Callable[..., flint.fmpq]] = {
     ca.OP_TAN: _exact_at_zero(flint.arb.tan, 0),
     ca.OP_ATAN: _exact_at_zero(flint.arb.atan, 0),
     ca.OP_SQRT: _exact_at_zero(flint.arb.sqrt, 0),
+    ca.OP_EXP: _exact_at_zero(flint.arb.exp, 1),
+    ca.OP_LOG: _irrational(flint.arb.log),
 }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, StringConstraints, model_validator
 from pydantic_core import PydanticCustomError
@@ -70,8 +70,9 @@ Fraction = Annotated[float, Quantity("1", at_least=0, example="0.2")]
 class Record(BaseModel):
     """Base of all records: frozen, no unknown keys."""
 
-    CONSTANTS: ClassVar[tuple[str, ...]] = ()
-    """Fields that stay numbers where the others become symbols: no derivative is taken of them."""
+    def constants(self) -> tuple[str, ...]:
+        """Fields that stay numbers where the others become symbols: no derivative is taken of them."""
+        return ()
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 

@@ -50,7 +50,7 @@ class _Kelvin(Quantity):
         return {"anyOf": [plain, text], "$comment": self.describe()}
 
 
-Temperature = Annotated[float, _Kelvin(at_least=173.15, at_most=473.15, example="20 degC", hint="20 is 20 K; write 20 degC")]
+Temperature = Annotated[float, _Kelvin(at_least=200, at_most=450, example="20 degC", hint="20 is 20 K; write 20 degC")]
 
 
 class TemperatureRange(Range):

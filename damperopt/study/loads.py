@@ -109,7 +109,7 @@ class GroundLoads(Record):
         """
         gear, tyre, required = study.gear, study.tyre, study.requirements
         load = max(study.envelope.loads) if load is None else load
-        at_rest = {state.name: 0.0 for state in gear.STATES}
+        at_rest = {state.name: 0.0 for state in gear.states()}
         wheels = gear.wheels(at_rest, study.envelope.speed.max, load)
         half_track = getattr(getattr(gear, "axle", None), "half_track", 0.0)
         side, moment, _, a = tyre.linear(wheels[0].load, tyre.pressure)

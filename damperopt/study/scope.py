@@ -52,7 +52,7 @@ def _uncertain(study: Study) -> list[str]:
         return []
     words = f"It covers every damping from {low:.4g} to {high:.4g} times that of the design"
     if damper.damping_range is None:
-        span = damper.temperature
+        span = damper.oil.span
         words += (
             f", which oil from {span.min - ZERO_CELSIUS:.4g} to {span.max - ZERO_CELSIUS:.4g} degC makes of it (Walther; "
             "laminar fraction and oil typical unless given); the compliance of the oil is that of the study throughout"

@@ -99,7 +99,7 @@ class Study(Record):
         """What uncertain damping does not go with."""
         if self.damper.damping_factors() == (1.0, 1.0):
             return
-        key = "damper.damping_range" if self.damper.damping_range is not None else "damper.temperature"
+        key = "damper.damping_range" if self.damper.damping_range is not None else "damper.oil.temperature"
         if self.envelope.load_is_range:
             raise refuse("envelope.vertical_load", f"a range of loads beside {key}", "one load or a list of loads")
         if self.requirements is not None and self.requirements.limit_event == "simulated":
@@ -107,7 +107,7 @@ class Study(Record):
 
     def wheel_loads(self, load: float) -> tuple[float, ...]:
         """Loads on the wheels [N] at a load on the gear [N]."""
-        at_rest = {state.name: 0.0 for state in self.gear.STATES}
+        at_rest = {state.name: 0.0 for state in self.gear.states()}
         return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
 
     def beyond_tyre(self, load: float) -> str:

@@ -77,7 +77,8 @@ def tyre_curves(tyre: Any, loads: Sequence[float], name: str) -> TyreCurves:
     if not kept:
         ends = f"{loads[0] / 1e3:.6g}"
         raise ConfigError(f"loads: {ends} kN {tyre.beyond(loads[0], pressure)}; allowed: loads that the tyre has data for")
-    small = np.array([tuple(map(float, tyre.linear(load, pressure))) for load in kept])
+    rows = [tuple(tyre.linear(load, pressure)) for load in kept]
+    small = np.array([[np.nan if value is None else float(value) for value in row] for row in rows])  # sigma may be missing
     others = [tyre.others(load, pressure) for load in kept]
     table = _linear_columns(np.array(kept), *small.T)
     for output in tyre.TABLE:

@@ -1,4 +1,4 @@
-"""An orifice with compressible oil: first harmonic by an independent simulation of the pressure, and by harmonic balance."""
+"""An orifice with compressible oil: its first harmonic by a simulation of the pressure, and by harmonic balance."""
 
 from __future__ import annotations
 

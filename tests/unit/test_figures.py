@@ -2,6 +2,7 @@
 
 import dataclasses
 import logging
+import re
 import subprocess
 import sys
 
@@ -197,3 +198,19 @@ def test_matplotlib_comes_with_the_first_figure_only():
 def test_every_public_figure_is_there():
     assert all(callable(getattr(figures, name)) for name in figures.__all__)
     assert callable(linkage)
+
+
+def test_written_figures_are_closed_and_both_files_have_one_layout(tmp_path):
+    with figures.styled():
+        figure, axis = plt.subplots(figsize=(4, 3))
+        axis.set(xlabel="x", ylabel="a label\nof two lines", title="title")
+        handle = plt.Line2D([], [])
+        figure.legend([handle], ["below the axes"], loc="outside lower center")
+    paths = figures.save(figure, tmp_path, "figure")
+    assert plt.get_fignums() == []
+    left, bottom, *_ = axis.get_position().bounds  # room was made for labels and legend
+    assert left > 0.12
+    assert bottom > 0.2
+    assert plt.imread(paths[0]).shape[:2] == (450, 600)
+    patch = re.search(r'id="patch_2">\s*<path d="M ([\d.]+) ([\d.]+)', paths[1].read_text())
+    assert [float(number) for number in patch.groups()] == pytest.approx([288 * left, 216 * (1 - bottom)], abs=1e-3)

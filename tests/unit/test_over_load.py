@@ -30,9 +30,12 @@ def test_a_ball_over_a_corner_holds_both_lines():
     for load in (80e3, 90e3, 100e3, 110e3, 120e3):
         assert found.contains(flint.arb(table.at(load)))
     assert float(found.rad()) < 0.05
-    steps = [lambda x: -x, lambda x: x * 0 + 5.0, lambda x: x]
-    assert piecewise(flint.arb(0.5, 0.1), [1.0, 2.0], steps).contains(-0.5)
-    assert not piecewise(flint.arb(0.5, 0.1), [1.0, 2.0], steps).contains(5.0)
+    bent = [lambda x: x, lambda x: 2 - x]  # meet at 1
+    assert piecewise(flint.arb(0.5, 0.1), [1.0], bent).contains(0.5)
+    assert not piecewise(flint.arb(0.5, 0.1), [1.0], bent).contains(0.7)
+    wide = piecewise(flint.arb(1, 0.25), [1.0], bent)
+    assert all(wide.contains(value) for value in (0.75, 1.0))
+    assert float(wide.rad()) < 0.4
 
 
 def test_the_law_sees_the_length_at_its_load():

@@ -111,11 +111,14 @@ class TR_R64Law(SlipLaw):
         return 0.85 * self._lengths()[0] * sqrt(_parabola(r, 0.0, 1.0, 1.0)) if given is None else given
 
     def _cornering(self, load: Expr, pressure: Expr) -> Expr:
-        """N = C_c w^2 (p + 0.44 p_r) (1.2 r - 8.8 r^2 up to r = 0.0875, then 0.0674 - 0.34 r) [N/rad]."""
+        """N = C_c w^2 (p + 0.44 p_r) (1.2 r - 8.8 r^2 up to r = 0.0875, then 0.067375 - 0.34 r) [N/rad].
+
+        The constant is known as 0.0674; with 0.067375 the pieces meet.
+        """
         r, _ = self._deflections(load, pressure)
         _, w = self._lengths()
         C_c = {"VII": 57.0, "III": 63.0}[self.type]
-        shape = piecewise(r, [0.0875], [lambda r: _parabola(r, 0.0, 1.2, 8.8), lambda r: 0.0674 - 0.34 * r])
+        shape = piecewise(r, [0.0875], [lambda r: _parabola(r, 0.0, 1.2, 8.8), lambda r: 0.067375 - 0.34 * r])
         return C_c * w * w * (self._pressure(pressure) + 0.44 * self.rated_pressure) * shape
 
     def _lateral(self, load: Expr, pressure: Expr) -> Expr:

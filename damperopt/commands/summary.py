@@ -72,8 +72,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         price = f"{c.shadow_price:.3g}" if c.active else ""
         table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
     console.print(table)
-    times = "" if certificate.damping is None else f", {worst.damping:.4g} times the damping"
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN{times}")
+    console.print(_worst(worst, certificate))
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
     loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
     console.print(
@@ -92,8 +91,8 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
         console.print(
             f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
-            f"{decay.load / 1e3:g} kN, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
-            f"; optimised with {decay.engine}",
+            f"{decay.load / 1e3:g} kN{_times(decay.damping, certificate)}, the worst of {decay.simulations} exact simulations; "
+            f"required {decay.limit:.5f}; optimised with {decay.engine}",
             soft_wrap=True,
         )
     if result.decided_by:
@@ -113,7 +112,17 @@ def _dampings(certificate: Certificate) -> str:
     """The interval of dampings that a certificate covers."""
     if certificate.damping is None:
         return ""
-    return f", every damping from {certificate.damping[0]:.4g} to {certificate.damping[1]:.4g} times that of the design"
+    return f", every damping from {certificate.damping[0]:.6g} to {certificate.damping[1]:.6g} times that of the design"
+
+
+def _times(factor: float, certificate: Certificate) -> str:
+    """A factor on the damping, where it is uncertain."""
+    return "" if certificate.damping is None else f", {factor:.4g} times the damping"
+
+
+def _worst(worst: OperatingPoint, certificate: Certificate) -> str:
+    times = _times(worst.damping, certificate)
+    return f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN{times}"
 
 
 def show_ranking(console: Console, results: Sequence[DesignResult]) -> None:
@@ -212,14 +221,14 @@ def show_analysis(
             if marginal
             else f"No critical speed between {low:g} and {high:g} m/s."
         )
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    console.print(_worst(worst, certificates[0]))
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
-        console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
+        console.print(f"Exact certificate, {goal}{_dampings(certificate)}: {verdict}", soft_wrap=True)
     console.print("Not checked: " + escape("; ".join(leaves_out(study))), soft_wrap=True, style="dim")
     if wave is not None:
         _show_wavelength(console, wave, study.tyre.contact.least_wave())

@@ -31,6 +31,7 @@ __all__ = [
     "number",
     "place",
     "size_rows",
+    "times",
     "verification",
 ]
 
@@ -40,6 +41,8 @@ DERIVED = {
     "torsional_damping": "damping about the strut axis",
 }
 """What follows from a whole design; what a component chooses, it declares with its meaning."""
+
+OVER_TEMPERATURE = "damping with the oil at this temperature"
 
 KINDS = {"strength": "strength", "geometry": "geometry", "decay": "decay", "stability": "stability margin", "bound": "bounds"}
 PEAKS = {
@@ -82,7 +85,7 @@ def asked(study: Study) -> list[str]:
     ]
     low, high = study.damper.damping_factors()
     if (low, high) != (1.0, 1.0):
-        found.append(f"All requirements hold for every damping from {low:.3g} to {high:.3g} times that of the design.")
+        found.append(f"All requirements hold for every damping from {low:.6g} to {high:.6g} times that of the design.")
     if required.decay is not None:
         found.append(
             f"After a disturbance the yaw angle falls to {required.decay.ratio:.3g} within {required.decay.cycles} cycles, "
@@ -119,6 +122,11 @@ def layout_words(study: Study) -> str:
     return (inspect.getdoc(study.damper.LAYOUT) or "").partition("\n")[0]
 
 
+def times(factor: float) -> str:
+    """Where the damping is not that of the design."""
+    return "" if factor == 1 else f", {factor:.4g} times the damping"
+
+
 def answer(result: DesignResult) -> str:
     """The answer in one sentence."""
     if result.mass is None:
@@ -135,6 +143,7 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     result : DesignResult
     """
     lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.variables}
+    meanings |= {name: OVER_TEMPERATURE for name in result.derived if name.startswith(f"{study.damper.VISCOUS}_at_")}
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
@@ -226,7 +235,7 @@ def certificate(result: DesignResult) -> str:
     loads = _range(proof.loads, "N", proof.over_a_range)
     where = f"margin {proof.margin:g} 1/s, every real speed from {speeds}, {loads}"
     if proof.damping is not None:
-        where += f", every damping from {proof.damping[0]:.4g} to {proof.damping[1]:.4g} times that of the design"
+        where += f", every damping from {proof.damping[0]:.6g} to {proof.damping[1]:.6g} times that of the design"
     reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
     if not proof.proved:
         return f"NOT proved: {where}. {reason}"
@@ -243,13 +252,13 @@ def verification(result: DesignResult) -> list[str]:
     if check is not None:
         found.append(
             f"Eigenvalues on {check.grid_speeds} speeds by {check.grid_loads} loads: worst {check.worst.abscissa:.6g} 1/s at "
-            f"{place(check.worst.speed, check.worst.load)}."
+            f"{place(check.worst.speed, check.worst.load)}{times(check.worst.damping)}."
         )
         found.append(f"{check.agreeing_starts} of {len(result.starts)} starts end here; KKT residual {check.kkt_residual:.1g}.")
     if decay is not None:
         kept = "kept" if decay.passed else "NOT kept"
         found.append(
-            f"Decay {kept}: {decay.ratio:.4f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.4g} m/s, "
-            f"the worst of {decay.simulations} event-exact simulations; required {decay.limit:.4f}."
+            f"Decay {kept}: {decay.ratio:.4f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.4g} m/s"
+            f"{times(decay.damping)}, the worst of {decay.simulations} event-exact simulations; required {decay.limit:.4f}."
         )
     return found

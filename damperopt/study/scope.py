@@ -50,7 +50,7 @@ def _uncertain(study: Study) -> list[str]:
     low, high = damper.damping_factors()
     if (low, high) == (1.0, 1.0):
         return []
-    words = f"It covers every damping from {low:.4g} to {high:.4g} times that of the design"
+    words = f"It covers every damping from {low:.6g} to {high:.6g} times that of the design"
     if damper.damping_range is None:
         span = damper.oil.span
         words += (

@@ -40,7 +40,7 @@ def analyse(
     study, values = study_and_design(file, design)
     grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
-    model, damper = LinearModel(study), study.damper
+    model = LinearModel(study)
     values = study.start if values is None else values
     gear = model.at(values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
@@ -48,14 +48,12 @@ def analyse(
     envelope = study.envelope.speed
     low, high = min(float(grid[0]), envelope.min), max(float(grid[-1]), envelope.max)
     certificates = [certify(study, values, level, model) for level in dict.fromkeys((0.0, margin))]
-    dampings = damper.dampings()
-    worst = worst_over_damping(lambda factor: model.at(damper.with_damping(values, factor)), dampings, study.envelope)[0]
     summary.show_analysis(
         out,
         study,
         values,
         critical=[c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)],
-        worst=worst,
+        worst=worst_over_damping(model, study, values)[0],
         certificates=certificates,
         searched=(low, high),
         wave=shortest_wavelength(study, tables),

@@ -154,10 +154,7 @@ class DesignProblem:
 
     def worst_points(self, design: Mapping[str, float], enough: float = np.inf) -> list[OperatingPoint]:
         """Local maxima of the spectral abscissa of a design over envelope and dampings, as `worst_over_damping` has them."""
-        damper = self.study.damper
-        return worst_over_damping(
-            lambda factor: self.model.at(damper.with_damping(design, factor)), damper.dampings(), self.study.envelope, enough
-        )
+        return worst_over_damping(self.model, self.study, design, enough)
 
     def abscissae(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
         """Spectral abscissa of a design at points (m, 3) of speed, load and factor on the damping, (m,) [1/s]."""

@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from scipy.optimize import minimize_scalar
 
 from ..results import OperatingPoint
-from ..study.envelope import Envelope
-from .gear import LinearGear
+from ..study.study import Study
+from .linear import LinearModel
 from .worst import worst_points
 
 __all__ = ["worst_over_damping"]
 
 
 def worst_over_damping(
-    gear_at: Callable[[float], LinearGear], row: Sequence[float], envelope: Envelope, enough: float = math.inf
+    model: LinearModel, study: Study, design: Mapping[str, float], enough: float = math.inf
 ) -> list[OperatingPoint]:
     """Local maxima of the spectral abscissa over speeds, loads and factors on the damping, the largest first.
 
     Parameters
     ----------
-    gear_at : callable
-        Factor -> gear.
-    row : sequence of float
-        Factors of the first look, ascending: the ends of the interval and some between, or one.
-    envelope : Envelope
+    model : LinearModel
+        Of the study.
+    study : Study
+    design : mapping of str to float
+        Design variables by name [SI].
     enough : float
         If the ends of the interval show an abscissa above this, their maxima are returned without looking between.
 
@@ -36,9 +36,11 @@ def worst_over_damping(
     list of OperatingPoint
         Between the ends the peak of a row of factors is refined, which is no proof: `certify` is.
     """
+    row = study.damper.dampings()
 
     def at(factor: float) -> list[OperatingPoint]:
-        return [replace(point, damping=factor) for point in worst_points(gear_at(factor), envelope, enough)]
+        gear = model.at(study.damper.with_damping(design, factor))
+        return [replace(point, damping=factor) for point in worst_points(gear, study.envelope, enough)]
 
     points = [point for factor in dict.fromkeys((row[0], row[-1])) for point in at(factor)]
     if len(row) > 1 and max(point.abscissa for point in points) <= enough:

@@ -61,6 +61,9 @@ class Damper(Record):
     OUTPUTS: ClassVar[tuple[Output, ...]] = ()
     SPEED_POWERS: ClassVar[tuple[int, ...]] = (0,)
     LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+    FEELS_RATE: ClassVar[bool] = True
+    """Whether the force hangs on the rate; where stroke and states alone make it, a massless node beside it has no equation of
+    motion of its own."""
     ROTARY: ClassVar[bool] = False
     """Whether it acts about the yaw axis: strokes are then angles, and forces torques."""
     VISCOUS: ClassVar[str] = ""

@@ -7,15 +7,13 @@ element is fitted to it at the frequency of shimmy.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
-
-from pydantic import model_validator
+from typing import Annotated, Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, sqrt
 from ..expressions.corners import Corners
 from ..ports.sizing import Force, LimitEvent, Sized
 from ..quantities.named import DesignVariable, State
-from ..quantities.record import Density, Stress, refuse
+from ..quantities.record import Density, Stress
 from ..quantities.units import Quantity
 from .base import Context, Damper
 
@@ -111,15 +109,9 @@ class Zener(_Rubber):
     """
 
     STATES: ClassVar = (State("relaxed_stroke", "m", "elastomer"),)
+    FEELS_RATE: ClassVar = False
 
     kind: Literal["zener"]
-
-    @model_validator(mode="after")
-    def _on_rigid_links(self) -> Self:
-        if getattr(self, "link_stiffness", None) is not None:
-            words = "elastic links in series with an elastomer without a dashpot of its own"
-            raise refuse("link_stiffness", words, "rigid links, or kind: kelvin_voigt")
-        return self
 
     @property
     def _ratio(self) -> Expr:

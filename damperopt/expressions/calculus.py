@@ -127,9 +127,9 @@ def piecewise(x: Expr, limits: Sequence[float], pieces: Sequence[Callable[[Expr]
 
 
 def _smaller(x: Expr, limit: float) -> Expr:
-    """The smaller of two."""
+    """The smaller of two; as a graph so that balls that hold the limit enclose it and its slope, which lies in [0, 1]."""
     if is_symbol(x):
-        return import_module("casadi").fmin(x, limit)
+        return limit + where(x < limit, x - limit, 0.0)
     if isinstance(x, (np.ndarray, np.generic)):
         return np.minimum(x, limit)
     return min(x, limit) if isinstance(x, (int, float)) else x.min(type(x)(limit))

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from ..dampers.base import Context
 from ..expressions.calculus import Expr, partial, symbol, value_at
 from ..expressions.corners import Corners
-from ..ports.linkage import Linkage
+from ..ports.linkage import Linkage, Path
 from ..ports.motion import Attachment, Torque
 from ..quantities.named import Output, State
 from .joints import beyond_gap, stop_force
@@ -113,6 +113,13 @@ class _Chain:
         if k_s is None:
             dashpot, v = s, engaged * lever * self._attachment.rate
             F_d = self._force(s, v).force
+        elif not damper.FEELS_RATE:  # where it stands follows from what holds it
+            dashpot = symbol("dashpot_stroke")
+            F_d = k_s * (s - dashpot)
+            own = self._force(dashpot, 0)
+            self._unknowns.append((dashpot, 0, (F_d - own.force) / k_s))
+            moved = k_s * engaged * lever * self._attachment.rate - self._by_states(own.force, own.rates)
+            v = moved / (k_s + partial(own.force, dashpot))
         else:
             name = "dashpot_angle" if damper.ROTARY else "dashpot_stroke"
             dashpot = symbol(name)
@@ -136,6 +143,8 @@ class _Chain:
         T, T_psi = self._through_links(path.angle)
         F_spring, F_stop = link.stiffness * path.deflection, stop_force(damper.stop, self._corners, s)
         F_d = (T * path.angle_slope - F_spring * path.deflection_slope) / s_u - F_stop
+        if not damper.FEELS_RATE:
+            return self._at_balance(u, path, F_d, T_psi * path.angle_slope / s_u, (F_spring, F_stop), -T)
         if k_s is None:
             dashpot = s
             v = self._speed(dashpot, F_d)
@@ -148,6 +157,27 @@ class _Chain:
         rest = _root(F_d, u)  # held for long, the damper carries nothing
         shown = (s, v, F_d, path.deflection, F_spring, F_stop)
         return self._answer(-T, {link.coordinate: (u, rate, rest)}, dashpot, v, shown)
+
+    def _at_balance(self, u: Expr, path: Path, F_d: Expr, F_psi: Expr, others: tuple[Expr, Expr], torque: Expr) -> Torque:
+        """Behind elastic links with a damper that does not feel its rate: u follows from the balance of forces."""
+        k_s = self._link.series
+        dashpot, slope = (path.stroke, 0) if k_s is None else (path.stroke - F_d / k_s, -F_psi / k_s)
+        own = self._force(dashpot, 0)
+        residual = F_d - own.force
+        along = symbol("stroke")
+        stiffness = value_at(partial(self._force(along, 0).force, along), along, dashpot)
+        # of the balance, kept as time goes on: residual_u u' + residual_psi psi' + residual_states states' = 0
+        psi_t = self._attachment.rate
+        moved = (F_psi - stiffness * slope) * psi_t - self._by_states(own.force, own.rates)
+        u_t = -moved / partial(residual, u)
+        self._unknowns.append((u, 0, residual * path.stroke_slope / (self._link.links * self._link.reach)))
+        v = partial(dashpot, u) * u_t + slope * psi_t
+        shown = (path.stroke, v, F_d, path.deflection, *others)
+        return self._answer(torque, {}, dashpot, v, shown)
+
+    def _by_states(self, force: Expr, rates: Mapping[str, Expr]) -> Expr:
+        """Rate of a force by the damper's own states alone."""
+        return sum(partial(force, self._own[name]) * rate for name, rate in rates.items())
 
     def _answer(
         self,

@@ -46,6 +46,10 @@ NEWTON_STEPS = 50
 STILL = 1e-13
 """Rate [rad/s] below which nothing rubs: what rounding leaves where the motion has stopped."""
 
+NOISE = 1e-11
+"""Relative to the sizes that its argument has had: how far a corner must be passed. A motion that creeps into a corner would
+meet it again and again by rounding."""
+
 STEPS_PER_CYCLE = 40
 """Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
 
@@ -120,6 +124,7 @@ class ExactSimulator:
         outputs = {"yaw_acceleration": dae.ode[dae.index("yaw_rate")], **dae.outputs}
         self.unknowns, self.units = dae.z.numel(), dae.units
         self.state_names, self.names = dae.state_names, (*dae.state_names, *outputs)
+        self._hidden = {state.name for state in dae.states if state.hidden}
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
@@ -179,6 +184,7 @@ class ExactSimulator:
         time = time[: values.shape[1]]
         named = dict(zip(names, values, strict=True))
         states = {name: named.pop(name) for name in self.state_names}
+        states = {name: row for name, row in states.items() if name not in self._hidden}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"
@@ -251,7 +257,7 @@ class _Run:
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
-        self._sticks = False
+        self._sticks, self._sizes = False, np.zeros(model.corners)
         self._z = np.zeros(model.unknowns)
         self._x0 = self._relaxed(np.array(disturbance.start(model.state_names)))
         self._z = model.first_guess(self._x0, self._z, self._modes, self._point)[0].copy()
@@ -335,10 +341,12 @@ class _Run:
         """Functions that fall through zero when a corner is passed, friction last."""
 
         def corner(i: int) -> Callable[[float, np.ndarray], float]:
-            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i])
+            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i] + NOISE * self._sizes[i])
 
         def grip(t: float, x: np.ndarray) -> float:
             rate, drive, most = self._evaluated(t, x)[3][:3]
+            if not most:  # in a gap nothing rubs
+                return 1.0
             return float(most - abs(drive) if self._sticks else rate * self._modes[-1])
 
         functions = [corner(i) for i in range(self._model.corners)]
@@ -358,14 +366,16 @@ class _Run:
             self._sticks, self._modes[-1] = False, np.sign(self._evaluated(t, x)[3][1])
             return
         if self._model.corners in passed:
-            rate, _, _, *slope = self._evaluated(t, x)[3]
-            x -= rate * np.array(slope) / np.dot(slope, slope)
+            rate, _, most, *slope = self._evaluated(t, x)[3]
+            if most:
+                x -= rate * np.array(slope) / np.dot(slope, slope)
         self._settle(t, x, [*others, self._model.corners])
 
     def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
         """Modes that go with a state; a corner that is met exactly is judged by where the motion goes."""
         for _ in range(2):  # a corner's argument may hang on the mode of another
             arguments = self._evaluated(t, x)[2].copy()
+            self._sizes = np.maximum(self._sizes, np.abs(arguments))
             ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
             for i in which:
                 if i < self._model.corners:
@@ -375,7 +385,7 @@ class _Run:
             return
         rate, drive, most = self._evaluated(t, x)[3][:3]
         if abs(rate) <= STILL:
-            self._sticks = abs(drive) <= most > 0  # in a gap nothing rubs
+            self._sticks = abs(drive) <= most > 0
             self._modes[-1] = 0.0 if self._sticks else np.sign(drive)
         else:
             self._sticks, self._modes[-1] = False, np.sign(rate)

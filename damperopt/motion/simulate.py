@@ -129,6 +129,7 @@ class Simulator:
             self._model.at(self.design)  # refuses an incomplete design
         dae = build(symbolic(study), Smooth())
         self._state_names, self._units = dae.state_names, dae.units
+        self._hidden = {state.name for state in dae.states if state.hidden}
         self._integrator = Integrator(dae, data_values(study), STEPS, self.engine, tolerance)
         self._outputs = Outputs(dae, study)
         self._data = data_values(study)
@@ -173,7 +174,8 @@ class Simulator:
             x, t = states, time[-1]
         time = np.concatenate(times)
         named = dict(zip(self._outputs.names, np.hstack(columns), strict=True))
-        kept_states = {name: named.pop(name) for name in self._state_names}
+        states_of = {name: named.pop(name) for name in self._state_names}
+        kept_states = {name: values for name, values in states_of.items() if name not in self._hidden}
         if message:
             message = f"{message} after {time[-1]:.4g} s"
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"

@@ -110,6 +110,11 @@ class Strip:
 
     def on(self, w: tuple[Q, Q]) -> Enclosure:
         """D over an interval of frequencies."""
+        direct, moves = self.spread(w)
+        return Enclosure(True, {}) if direct.abs_lower() > 0 else _beside(self.at((w[0] + w[1]) / 2), moves())
+
+    def spread(self, w: tuple[Q, Q]) -> tuple[flint.acb, Callable[[], dict[str, flint.acb]]]:
+        """Ball over D on an interval of frequencies, and what its derivatives there times half the widths are, by direction."""
         s = flint.acb(self._mu, ball(flint.arb(w[0]), flint.arb(w[1])))
         part, V = self._part, self._over
         per = part.tyre_over.length / V
@@ -117,22 +122,23 @@ class Strip:
         line = transit_of(z)
         f_m = _of_line(part.tyre_over, line)
         here = _Terms(_values(part.over, s), V, *f_m)
-        direct = here.total()
-        if direct.abs_lower() > 0:
-            return Enclosure(True, {})
-        by_f, by_m = here.by_f(), here.by_m()
-        f_z = part.tyre_over.force[1] * line.delayed_z + part.tyre_over.force[2] * line.mean_z
-        m_z = part.tyre_over.moment[1] * line.delayed_z + part.tyre_over.moment[2] * line.chi_z
-        by_z = f_z * by_f + m_z * by_m
-        by_s = _Terms(_values(self._by_s, s), V, *f_m).total() + by_z * per
-        moves = {"w": flint.acb(0, 1) * by_s * flint.arb((w[1] - w[0]) / 2)}
-        if self._dV > 0:
-            moves["V"] = (here.by_V() - by_z * z / V) * self._dV
-        if part.slope:
-            f_F, m_F = _of_line(part.tyre_slope, line)
-            by_F = _Terms(_values(part.slope, s), V, *f_m).total() + by_f * f_F + by_m * m_F
-            moves["F"] = (by_F + by_z * s * part.tyre_slope.length / V) * self._dF
-        return _beside(self.at((w[0] + w[1]) / 2), moves)
+
+        def moves() -> dict[str, flint.acb]:
+            by_f, by_m = here.by_f(), here.by_m()
+            f_z = part.tyre_over.force[1] * line.delayed_z + part.tyre_over.force[2] * line.mean_z
+            m_z = part.tyre_over.moment[1] * line.delayed_z + part.tyre_over.moment[2] * line.chi_z
+            by_z = f_z * by_f + m_z * by_m
+            by_s = _Terms(_values(self._by_s, s), V, *f_m).total() + by_z * per
+            found = {"w": flint.acb(0, 1) * by_s * flint.arb((w[1] - w[0]) / 2)}
+            if self._dV > 0:
+                found["V"] = (here.by_V() - by_z * z / V) * self._dV
+            if part.slope:
+                f_F, m_F = _of_line(part.tyre_slope, line)
+                by_F = _Terms(_values(part.slope, s), V, *f_m).total() + by_f * f_F + by_m * m_F
+                found["F"] = (by_F + by_z * s * part.tyre_slope.length / V) * self._dF
+            return found
+
+        return here.total(), moves
 
     def radius(self) -> Q:
         """R with |D/lambda^n - 1| < 1 wherever |lambda| >= R and Re lambda >= -mu."""

@@ -84,7 +84,9 @@ def certify(
     method = "bernstein" if envelope.load_is_range else "sturm"
 
     def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
-        return Certificate(point is None if proved is None else proved, margin, speeds, loads, method, point, reason, boxes)
+        proved = point is None if proved is None else proved
+        verdict: Any = "proved" if proved else "undecided" if point is None else "refuted"
+        return Certificate(proved, margin, speeds, loads, method, point, reason, boxes, verdict)
 
     if envelope.load_is_range and model.powers.load is None:
         return outcome(None, NO_RANGE, proved=False)

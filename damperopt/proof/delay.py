@@ -52,6 +52,11 @@ FREQUENCIES, SPEEDS, LOADS = 4, 2.0, 1.5
 LOOKED_AT = 48
 """Speeds at each load where eigenvalues hint at a point to count at; a hint proves nothing."""
 
+NO_RANGE = (
+    "not proved: gear or damper are no polynomial in the load, and a proof over a range of loads needs one; "
+    "a list of loads can be proved load by load"
+)
+
 ASIDE = (0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from a box that keeps its 0 at which roots are counted."""
 
@@ -130,12 +135,15 @@ class _Proof:
         assert model.structure is not None
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
         self._strips = Strips(characteristic or Quasipolynomial(study, model.structure, design), margin)
-        self._boxes = 0
+        self._boxes, self._polynomial = 0, model.structure.powers.load is not None
         speed, loads = study.envelope.speed, [decimal(F) for F in study.envelope.loads]
         self._speeds = decimal(speed.min), decimal(speed.max)
         self._spans = [(loads[0], loads[-1])] if study.envelope.load_is_range else [(F, F) for F in loads]
 
     def certificate(self) -> Certificate:
+        """The three steps for every load or the range of them."""
+        if self._envelope.load_is_range and not self._polynomial:
+            return self._outcome("undecided", None, None, NO_RANGE)
         for V, F in self._hints():
             if self.count(V, F):
                 return self._refuted(V, F)

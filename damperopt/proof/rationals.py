@@ -76,8 +76,6 @@ _OPERATIONS: dict[int, Callable[..., flint.fmpq]] = {
     ca.OP_SQ: lambda a: a * a,
     ca.OP_TWICE: lambda a: a + a,
     ca.OP_FABS: lambda a: max(a, -a),
-    ca.OP_FMIN: min,
-    ca.OP_FMAX: max,
     ca.OP_SIGN: lambda a: flint.fmpq((a > 0) - (a < 0)),
     ca.OP_LT: lambda a, b: _truth(a < b),
     ca.OP_LE: lambda a, b: _truth(a <= b),

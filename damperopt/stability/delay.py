@@ -310,17 +310,18 @@ def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.nd
 
 
 def _newton(model: Frozen, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Roots (p, k) of D from starts (p, k), and where it has converged."""
+    """Roots (p, k) of D from starts (p, k), and where it has converged; a start far to the left may overflow, and has not."""
     n, done = model.A_0.shape[1], np.zeros(s.shape, bool)
+    step = np.full(s.shape, np.inf, complex)
     for _ in range(NEWTON_STEPS):
-        A, slope = model.at(s)
-        shifted = s[..., None, None] * np.eye(n) - A
-        try:
-            ratio = np.trace(np.linalg.solve(shifted, np.eye(n) - slope), axis1=-2, axis2=-1)
-        except np.linalg.LinAlgError:  # one is met exactly
-            s = s + 1e-14 * (1 + np.abs(s))
-            continue
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
+            A, slope = model.at(s)
+            shifted = s[..., None, None] * np.eye(n) - A
+            try:
+                ratio = np.trace(np.linalg.solve(shifted, np.eye(n) - slope), axis1=-2, axis2=-1)
+            except np.linalg.LinAlgError:  # one is met exactly
+                s = s + 1e-14 * (1 + np.abs(s))
+                continue
             step = np.where(done, 0, 1 / ratio)
         s = np.where(np.isfinite(step), s - step, s)
         done |= np.abs(step) <= CONVERGED * (1 + np.abs(s))

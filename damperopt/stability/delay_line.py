@@ -50,9 +50,11 @@ class DelayLine:
         return followed(self._speeds, values, values.shape[1])[0]
 
     def crossings(self, level: float) -> np.ndarray:
-        """Speeds at which a root has the real part `level` [1/s], ascending."""
+        """Speeds at which a root has the real part `level` [1/s], ascending; none for a single speed."""
         speeds, found = self._speeds, []
-        for column in self._roots.T[self._roots.imag.mean(axis=0) >= -1e-9]:
+        if speeds[0] == speeds[-1]:
+            return np.zeros(0)
+        for column in self._roots.T[self._roots.imag.max(axis=0) >= -1e-9]:
             away = column.real - level
             brackets = [(k, k + 1) for k in np.flatnonzero(away[1:] * away[:-1] <= 0).tolist()]
             step = np.abs(np.diff(away))
@@ -67,10 +69,9 @@ class DelayLine:
     def _real(self, column: np.ndarray, k: int, level: float, speed: float) -> float:
         """Real part beyond the level of the root that is column[k] at the speed k."""
         speeds = self._speeds
-        j = min(max(k, 1), len(speeds) - 2)
-        guess = np.interp(speed, speeds[j - 1 : j + 2], column[j - 1 : j + 2].real) + 1j * np.interp(
-            speed, speeds[j - 1 : j + 2], column[j - 1 : j + 2].imag
-        )
+        near = slice(max(k - 1, 0), k + 2)
+        real, imag = (np.interp(speed, speeds[near], part[near]) for part in (column.real, column.imag))
+        guess = real + 1j * imag
         roots = self._gear.roots(speed, self._load, self._roots.shape[1])[0]
         return float(roots[np.abs(roots - guess).argmin()].real - level)
 

@@ -76,16 +76,23 @@ def shifted(a: Sequence[Any], sigma: Any) -> list[Any]:
 
 
 def determinant(rows: Sequence[Sequence[Any]]) -> Any:
-    """Determinant by expansion along the first row (symbols have no pivots; zeros of the literal 0 are skipped)."""
-    if len(rows) == 1:
-        return rows[0][0]
-    total: Any = 0
-    for j, entry in enumerate(rows[0]):
-        if isinstance(entry, int) and entry == 0:
-            continue
-        minor = [[*row[:j], *row[j + 1 :]] for row in rows[1:]]
-        total = total + (-1) ** j * entry * determinant(minor)
-    return total
+    """Determinant by expansion along the first row, each minor once (symbols have no pivots; the literal 0 is skipped)."""
+    known: dict[tuple[int, ...], Any] = {}
+
+    def minor(columns: tuple[int, ...]) -> Any:
+        """Of the last rows, as many as there are columns."""
+        row = rows[-len(columns)]
+        if len(columns) == 1:
+            return row[columns[0]]
+        if columns not in known:
+            total: Any = 0
+            for j, c in enumerate(columns):
+                if not (isinstance(row[c], int) and row[c] == 0):
+                    total = total + (-1) ** j * row[c] * minor((*columns[:j], *columns[j + 1 :]))
+            known[columns] = total
+        return known[columns]
+
+    return minor(tuple(range(len(rows))))
 
 
 def hurwitz_determinant(a: Sequence[Any], order: int) -> Any:

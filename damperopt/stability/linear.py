@@ -57,6 +57,11 @@ class LinearModel:
         self.state_matrix = linearise(dae)
         self.powers = powers_of(study)
         self.structure = None if study.tyre.contact.RATIONAL else Structure(study)
+        if self.structure is not None and self.structure.footprint is None:
+            raise ConfigError(
+                f"tyre.contact: '{study.tyre.contact.contact}' says that it is not RATIONAL and is no StringLine; "
+                "allowed: a line whose states stand for all of it, or one with the weights of a StringLine"
+            )
         self._data = ca.DM(data_values(study))
 
     def at(self, design: Mapping[str, float]) -> LinearGear:

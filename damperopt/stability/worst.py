@@ -20,8 +20,8 @@ __all__ = ["worst_points"]
 LOADS = 9
 """Loads of the first look at a load range, spaced evenly, and as many spaced geometrically."""
 
-ROW, ZOOMS = 11, 9
-"""Speeds of a row, and rows, that close in on a maximum."""
+ROW, ZOOMS = 11, 6
+"""Speeds of a row, and rows, that close in on a maximum: to 1e-6 of the speed, and to the square of that in the abscissa."""
 
 LINES = 7
 """Lines of constant speed along which a load range is searched exactly."""
@@ -38,7 +38,8 @@ def worst_points(
     envelope : Envelope or Study
         A study stands for its envelope.
     enough : float
-        Over a load range: if its ends show an abscissa above this, their maxima are returned without looking between.
+        Over a load range: if its ends show an abscissa above this, their maxima are returned without looking between. With a
+        delay: if the samples show one, they are returned as they are.
     samples : int
         Speeds of the first look; the result does not hang on it, see Notes.
 
@@ -56,7 +57,7 @@ def worst_points(
     """
     if isinstance(envelope, Study):
         envelope = envelope.envelope
-    points = [point for load in envelope.loads for point in _worst_at_load(gear, envelope, load, samples)]
+    points = [point for load in envelope.loads for point in _worst_at_load(gear, envelope, load, samples, enough)]
     if envelope.load_is_range and max(p.abscissa for p in points) <= enough:
         points += _worst_between_loads(gear, envelope, samples)
     return sorted(points, key=lambda point: -point.abscissa)
@@ -139,7 +140,9 @@ def _zoomed(gear: LinearGear, load: float, left: float, right: float) -> float:
     return float(row[top])
 
 
-def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: int) -> list[OperatingPoint]:
+def _worst_at_load(
+    gear: LinearGear, envelope: Envelope, load: float, samples: int, enough: float = np.inf
+) -> list[OperatingPoint]:
     low, high = envelope.speed.min, envelope.speed.max
     delayed = isinstance(gear, DelayGear)
 
@@ -160,6 +163,9 @@ def _worst_at_load(gear: LinearGear, envelope: Envelope, load: float, samples: i
     speeds = np.geomspace(low, high, samples)
     speeds[0], speeds[-1] = low, high
     height = gear.abscissa(speeds, load)
+    if delayed and height.max() > enough:
+        found = [OperatingPoint(float(speeds[i]), float(load), float(height[i])) for i in _peaks(height)]
+        return sorted(found, key=lambda p: -p.abscissa)
     found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
 
     if delayed:

@@ -101,6 +101,7 @@ def transit(z: Expr) -> tuple[Expr, Expr, Expr]:
 
     Examples
     --------
+    >>> import math
     >>> E, phi1, chi = transit(2.0)
     >>> round(phi1, 12) == round((1 - math.exp(-2)) / 2, 12)
     True

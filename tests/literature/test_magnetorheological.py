@@ -168,3 +168,24 @@ def test_fail_safe_gear_shimmies_and_a_current_holds_it():
 
     assert last(0.0) > 0.05
     assert last(5.0) < 0.02
+
+
+JOINTS = {
+    "spatial": {"geometry": "spatial"},
+    "freeplay": {"freeplay": {"gap": 2e-4}},
+    "spatial with freeplay": {"geometry": "spatial", "freeplay": {"gap": 2e-4}},
+    "freeplay and links": {"freeplay": {"gap": 2e-4}, "link_stiffness": 5e6},
+    "spatial with links": {"geometry": "spatial", "link_stiffness": 5e6},
+}
+
+
+@pytest.mark.parametrize("joints", JOINTS)
+@pytest.mark.parametrize("current", [0.08, 0.8])
+def test_smooth_version_goes_to_the_exact_one_with_joints(joints, current):
+    """Where it sticks, slides, and in a gap does neither."""
+    study = gear(design={"c_lambda": 500.0}, idle_current=current, smoothing=1e-5, **JOINTS[joints])
+    question = {"speed": 30.0, "disturbance": {"release": {"yaw_angle": 0.01}}, "duration": 0.4}
+    exact, smooth = simulate_exactly(study, points=201, **question), simulate(study, **question)
+    assert exact.status == smooth.status == "completed"
+    error = np.interp(exact.time, smooth.time, smooth["yaw_angle"]) - exact["yaw_angle"]
+    assert np.abs(error).max() < 2e-3 * 0.01

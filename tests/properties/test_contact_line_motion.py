@@ -171,3 +171,11 @@ def test_leading_point_is_the_front_of_every_line():
     rng = np.random.default_rng(2)
     found = [line.slips(wheel, linear, [0.02, *rng.uniform(-0.01, 0.01, len(line.states()) - 1)]).rates[0] for line in lines]
     assert found == pytest.approx([found[0]] * 3, rel=1e-13)
+
+
+def test_coefficients_of_the_field_are_not_shown():
+    """They are internal; the deflection of the leading point is what users see."""
+    for run in (simulate, simulate_exactly):
+        motion = run(nonlinear(), speed=20.0, disturbance={"kick": {"yaw_rate": 0.1}}, duration=0.05)
+        assert "string_deflection" in motion.states
+        assert not [name for name in motion.states if name.startswith("contact_line")]

@@ -176,7 +176,7 @@ def test_what_is_refused(base, changes, words):
 
 
 def test_memory_with_a_vane(base):
-    """A rotary damper enters with c: half of 1.5 times the critical damping is refuted, the whole and three quarters are proved."""
+    """A rotary damper enters with c: of 1.5 times the critical damping a half is refuted, three quarters are proved."""
     vane = {"topology": "rotational", "torsional_stiffness": 3.8e5, "kind": "vane", "mean_radius": 0.1, "vane_width": 0.03}
     bounds = {"start": 1e3, "min": 10.0, "max": 1e5}
     study = base.replace(damper=vane, design={"c_vane": bounds}, tyre__contact="memory", requirements__limit_torque=1e4)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from basic_twin import effective_caster
 from memory_twin import F_Z, S, T, gear, study_text
 
 from damperopt import ConfigError, certify, linear_gear, loads
+from damperopt.gears.yaw import Yaw
+from damperopt.proof.delay import roots_to_the_right
 from damperopt.stability.linear import LinearModel
 from damperopt.tyres.base import Linear
 
@@ -103,3 +107,37 @@ envelope: {speed: {min: 0.05, max: 2}, vertical_load: 100}
     tangent, memory = (loads("name: towed" + text % contact) for contact in ("leading_point", "memory"))
     assert certify(tangent, {}, 0.0).proved
     assert certify(memory, {}, 0.0).verdict == "refuted"
+
+
+class TwoWheels(Yaw):
+    """Two wheels on one axle, half of the load and of the tyre each: together one."""
+
+    def wheels(self, x, speed, load):
+        (wheel,) = super().wheels(x, speed, load)
+        return tuple(replace(wheel, load=load / 2, index=i) for i in range(2))
+
+    def rates(self, x, contacts, damper, yaw_torque, corners):
+        one, other = contacts
+        force, moment = one.side_force + other.side_force, one.aligning_moment + other.aligning_moment
+        return super().rates(x, [replace(one, side_force=force, aligning_moment=moment)], damper, yaw_torque, corners)
+
+
+def test_two_wheels_are_one():
+    """Eigenvalues, count and proof of a gear with two contact lines; the difference of the lines decays by itself."""
+    single = loads(study_text(gear(S, c_psi=900.0), order=3))
+    half = {"cornering_stiffness": S["C_F"] / 2, "aligning_stiffness": S["C_M"] / 2, "tread_width_moment": 285.0}
+    blocks = {key: getattr(single, key) for key in type(single).model_fields}
+    wheels = TwoWheels.model_construct(**{key: getattr(single.gear, key) for key in Yaw.model_fields})
+    double = type(single).model_construct(**blocks | {"gear": wheels, "tyre": single.tyre.model_copy(update=half)})
+    model = LinearModel(double)
+    for V in (8.0, 25.0, 60.0):
+        one = linear_gear(single).roots(V, F_Z)[0]
+        two = model.at({}).roots(V, F_Z, 6)[0]
+        for root in one:
+            assert np.abs(two - root).min() < 1e-9 * abs(root)
+        assert np.abs(two + V / 0.3).min() < 1e-9 * V / 0.3  # v1 of one against the other's: sigma v' = -V v
+        for margin in (0.0, 1.0):
+            count = roots_to_the_right(double, {}, margin, V, F_Z, model)
+            assert count == roots_to_the_right(single, {}, margin, V, F_Z, LinearModel(single))
+    for margin in (0.0, 0.1, 3.0):
+        assert certify(double, {}, margin, model).verdict == certify(single, {}, margin).verdict

@@ -15,6 +15,7 @@ from .motion.exact import ExactSimulator
 from .optimum.answer import (
     SAME_MASS,
     constraint_results,
+    damping_over_temperature,
     decided_by,
     infeasible_message,
     local_optima,
@@ -42,7 +43,6 @@ from .results import (
     MassResult,
     Verification,
 )
-from .stability.worst import worst_points
 from .study.components import optimisable
 from .study.study import Study
 from .workers import executor
@@ -256,9 +256,9 @@ def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution
     study, model = solver.problem.study, solver.problem.model
     certificate = certify(study, best.solution.design, model=model)
     for _ in range(REFINEMENTS):
-        if certificate.counterexample is None:
+        if (place := certificate.place) is None:
             break
-        again = held_again(solver, best, [certificate.counterexample])
+        again = held_again(solver, best, [place])
         if not again.solved:
             break
         best, certificate = again, certify(study, again.solution.design, model=model)
@@ -269,17 +269,17 @@ def _decayed(
     solver: NlpSolver, best: EnvelopeSolution, certificate: Certificate
 ) -> tuple[EnvelopeSolution, Certificate, DecayCheck | None]:
     """The optimum with its exact simulation; where that finds a speed that the search has missed, solved again with it."""
-    study, missed = solver.problem.study, list[tuple[float, float]]()
+    study, missed = solver.problem.study, list[tuple[float, float, float]]()
     if study.required.decay is None:
         return best, certificate, None
     simulator = ExactSimulator(study, model=solver.problem.model)
     for _ in range(REFINEMENTS):
-        points = [(p.speed, p.load) for p in best.decay]
+        points = [p.place for p in best.decay]
         check = check_decay(study, best.solution.design, points, simulator=simulator)
         check = replace(check, optimised=best.decay[0].ratio, engine=solver.decay.engine)
         if check.passed or check.ratio > (1 + NEARLY) * check.limit:
             break
-        missed.append((check.speed, check.load))
+        missed.append((check.speed, check.load, check.damping))
         again = held_again(solver, best, decay_points=missed)
         if not again.solved:
             break
@@ -287,8 +287,13 @@ def _decayed(
     return best, certificate, check
 
 
-def _points_for(problem: DesignProblem, design: Mapping[str, float]) -> list[tuple[float, float]]:
-    return [(p.speed, p.load) for p in worst_points(problem.model.at(design), problem.study.envelope)]
+def _points_for(problem: DesignProblem, design: Mapping[str, float]) -> list[tuple[float, float, float]]:
+    return [point.place for point in problem.worst_points(design)]
+
+
+def _times(factor: float) -> str:
+    """Where the damping is not as designed."""
+    return "" if factor == 1 else f", {factor:.4g} times the damping"
 
 
 def _checked(
@@ -310,12 +315,12 @@ def _checked(
     if not grid.passed:
         failures.append(
             f"an eigenvalue has the real part {grid.worst.abscissa:.6g} 1/s at {grid.worst.speed:.6g} m/s, "
-            f"{grid.worst.load / 1e3:.6g} kN"
+            f"{grid.worst.load / 1e3:.6g} kN{_times(grid.worst.damping)}"
         )
     if decay is not None and not decay.passed:
         failures.append(
             f"the exact simulation decays to {decay.ratio:.6g} of the first amplitude in {decay.cycles} cycles at "
-            f"{decay.speed:.6g} m/s, {decay.load / 1e3:.6g} kN; required {decay.limit:.6g}"
+            f"{decay.speed:.6g} m/s, {decay.load / 1e3:.6g} kN{_times(decay.damping)}; required {decay.limit:.6g}"
         )
     factors = solver.simulated_factors(solution.design)
     event = problem.limit_event(solution.design, factors)
@@ -323,9 +328,11 @@ def _checked(
         over = [name for name, peak in decay.peaks.items() if peak > (1 + PEAK_TOLERANCE) * event[name]]
         failures += [f"the exact simulation shows {decay.peaks[n]:.5g} for {n}, sized for {event[n]:.5g}" for n in over]
     if study.required.damping_ratio is not None:
-        ratio, V, F_z = check_damping(study, solution.design, problem.model)
+        ratio, V, F_z, factor = check_damping(study, solution.design, problem.model)
         if ratio < study.required.damping_ratio:
-            failures.append(f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN")
+            failures.append(
+                f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN{_times(factor)}"
+            )
     simulated = {} if decay is None else decay.peaks
     rows = margin_rows(study, solution.design, simulated)
     failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]
@@ -343,7 +350,8 @@ def _checked(
     parts = problem.parts(solution.design, factors)
     mass = float(sum(parts.values()))
     constraints = constraint_results(problem, best, factors)
-    weights = decided_by(constraints, mass)
+    weights, warm = decided_by(constraints, mass), damping_over_temperature(study, solution.design)
+    viscous = problem.units.get(study.damper.VISCOUS, "")
     message = f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
     if weights:
         message += f"; the mass is decided by {next(iter(weights))}"
@@ -353,8 +361,10 @@ def _checked(
             "status": "failed" if failures else "solved",
             "message": message,
             "design": solution.design,
-            "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design, factors)},
-            "units": problem.units | {"torsional_stiffness": "N m/rad", "torsional_damping": "N m s/rad"},
+            "derived": {**problem.yaw_numbers(solution.design), **problem.least_sizes(solution.design, factors), **warm},
+            "units": problem.units
+            | {"torsional_stiffness": "N m/rad", "torsional_damping": "N m s/rad"}
+            | dict.fromkeys(warm, viscous),
             "limit_event": event,
             "mass": MassResult(total=mass, parts=parts),
             "stability": worst,

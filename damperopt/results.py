@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
@@ -17,6 +16,7 @@ from .older_results import completed
 from .reading import MOST_RESULT_BYTES, printable, text_of
 from .search_rows import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
 from .stock_rows import StockCandidate, StockResult
+from .verdicts import FINITE, Certificate, DecayCheck, OperatingPoint, Verdict
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -43,120 +43,12 @@ __all__ = [
 SCHEMA_VERSION = 2
 """That is written; version 1 is read."""
 
-Verdict = Literal["proved", "refuted", "undecided"]
-"""Of a certificate: it holds, a point of the envelope contradicts it, or neither was shown."""
-
-_FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
-"""What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""
-
 SUM_TOLERANCE = 1e-9
 """Relative difference of a total from the sum of its parts that is rounding."""
 
 
-@dataclass(frozen=True)
-class OperatingPoint:
-    """A speed [m/s] and a vertical load [N], with the spectral abscissa there [1/s]."""
-
-    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
-
-    speed: float
-    load: float
-    abscissa: float
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """Outcome of `certify`.
-
-    Attributes
-    ----------
-    proved : bool
-        True: every speed and load of the envelope has a spectral abscissa below -margin.
-    margin : float
-        The margin that was tested [1/s].
-    speed : tuple of float
-        Speed range [m/s].
-    loads : tuple of float
-        The loads, or the ends of the range [N].
-    method : str
-        ``sturm`` or ``bernstein``; with contact memory ``balls``, over a range of loads ``balls, rectangle``.
-    counterexample : tuple of float or None
-        (speed [m/s], load [N]) where the margin is missed or not strictly met, if not proved; None also where a load range
-        could not be decided.
-    reason : str
-        One sentence.
-    boxes : int
-        Rectangles examined (``bernstein``), or boxes of frequency, speed and load (``balls``).
-    verdict : str or None
-        ``proved``, ``refuted`` or ``undecided``.
-    frequency : float or None
-        Of the root at the counterexample, or where it could not be decided [rad/s].
-    """
-
-    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
-
-    proved: bool
-    margin: float
-    speed: tuple[float, float]
-    loads: tuple[float, ...]
-    method: str
-    counterexample: tuple[float, float] | None
-    reason: str
-    boxes: int = 0
-    verdict: Verdict | None = None
-    frequency: float | None = None
-
-    @property
-    def over_a_range(self) -> bool:
-        """Whether `loads` are the ends of a range."""
-        return self.method in ("bernstein", "balls, rectangle")
-
-    @property
-    def found(self) -> Verdict:
-        """The verdict; where none was given, that of the other fields."""
-        return self.verdict or ("proved" if self.proved else "undecided" if self.counterexample is None else "refuted")
-
-
-@dataclass(frozen=True)
-class DecayCheck:
-    """Decay of a design over the envelope.
-
-    Attributes
-    ----------
-    passed : bool
-        The ratio is not exceeded anywhere that was looked at.
-    limit : float
-        Required ratio.
-    cycles : int
-        Cycles that are counted.
-    speed, load, ratio : float
-        Where it is largest [m/s], [N], by the exact simulation, and how large.
-    optimised : float
-        Largest ratio by the smooth simulation that the optimiser used.
-    simulations : int
-        Exact simulations that were made.
-    peaks : dict of str to float
-        Largest magnitudes that they show [SI].
-    engine : str
-        Integrator of the optimiser, and whether a missing C compiler decided that.
-    """
-
-    __pydantic_config__: ClassVar[ConfigDict] = _FINITE
-
-    passed: bool
-    limit: float
-    cycles: int
-    speed: float
-    load: float
-    ratio: float
-    optimised: float
-    simulations: int
-    peaks: dict[str, float]
-    engine: str = ""
-
-
 class _Record(BaseModel):
-    model_config = ConfigDict(frozen=True, **_FINITE)
+    model_config = ConfigDict(frozen=True, **FINITE)
 
 
 def _impossible(what: str, found: Any) -> PydanticCustomError:

@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 from pydantic import BaseModel
 
+from .quantities.record import Record
 from .study.study import Study
 
 __all__ = ["SymbolicStudy", "data_names", "data_values", "symbolic"]
@@ -56,7 +57,7 @@ def symbolic(study: Study) -> SymbolicStudy:
         fields = {}
         for key in type(record).model_fields:
             value, inner = getattr(record, key), f"{path}.{key}"
-            if isinstance(value, BaseModel):
+            if isinstance(value, BaseModel) and key not in _constants(record):
                 value = twin(value, inner)
             fields[key] = symbols.get(inner, value)
         return type(record).model_construct(**fields)
@@ -83,6 +84,8 @@ def _numbers(study: Study) -> list[tuple[str, float]]:
         found: list[tuple[str, float]] = []
         for key in type(record).model_fields:
             value = getattr(record, key)
+            if key in _constants(record):
+                continue
             if isinstance(value, BaseModel):
                 found += walk(value, f"{path}.{key}")
             elif isinstance(value, float):
@@ -91,3 +94,7 @@ def _numbers(study: Study) -> list[tuple[str, float]]:
 
     blocks = ((key, getattr(study, key)) for key in _DATA_BLOCKS)
     return [number for key, block in blocks if block is not None for number in walk(block, key)]
+
+
+def _constants(record: BaseModel) -> tuple[str, ...]:
+    return record.constants() if isinstance(record, Record) else ()

@@ -31,30 +31,30 @@ def analyse(
     from ..output.tables import write_modes
     from ..proof.certify import certify
     from ..stability.critical import critical_speeds, marginal_throughout
-    from ..stability.linear import linear_gear
+    from ..stability.linear import LinearModel
     from ..stability.modes import track_modes
+    from ..stability.over_damping import worst_over_damping
     from ..stability.wavelength import shortest_wavelength
-    from ..stability.worst import worst_points
     from . import summary
     from .arguments import speed_grid
 
     study, values = study_and_design(file, design)
     grid = speed_grid(speeds, study)
     folder = run_folder(output, f"{file.stem}-analysis")
-    gear = linear_gear(study, values)
+    model = LinearModel(study)
+    values = study.start if values is None else values
+    gear = model.at(values)
     tables = [track_modes(gear, grid, load) for load in study.envelope.loads]
     margin = study.required.stability_margin if study.requirements else 0.0
     envelope = study.envelope.speed
     low, high = min(float(grid[0]), envelope.min), max(float(grid[-1]), envelope.max)
-    if values is None:
-        values = study.start
-    certificates = [certify(study, values, level) for level in dict.fromkeys((0.0, margin))]
+    certificates = [certify(study, values, level, model) for level in dict.fromkeys((0.0, margin))]
     summary.show_analysis(
         out,
         study,
         values,
         critical=[c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)],
-        worst=worst_points(gear, study.envelope)[0],
+        worst=worst_over_damping(model, study, values)[0],
         certificates=certificates,
         searched=(low, high),
         wave=shortest_wavelength(study, tables),

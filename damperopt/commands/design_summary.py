@@ -13,7 +13,7 @@ from ..stock_rows import candidate_cells, stock_words
 from ..study.components import unit_of_name
 from ..study.scope import covers
 from ..study.study import Study
-from .summary import number_and_unit, plain_table
+from .summary import dampings, number_and_unit, plain_table, times, worst_words
 
 __all__ = ["show_design", "show_ranking"]
 
@@ -50,12 +50,12 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         table.add_row(c.name, f"{c.value:.5g}", f"{c.sense} {c.limit:.5g}", c.unit, price, style=style)
     console.print(table)
     _show_loads(console, result)
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    console.print(worst_words(worst, certificate))
     proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
     loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
     console.print(
         f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
-        f"{certificate.speed[1]:g} m/s, {loads} kN",
+        f"{certificate.speed[1]:g} m/s, {loads} kN{dampings(certificate)}",
         soft_wrap=True,
     )
     console.print(escape(next(iter(result.covers or covers(study)))), soft_wrap=True)
@@ -69,7 +69,7 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
         console.print(
             f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
-            f"{decay.load / 1e3:g} kN, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
+            f"{decay.load / 1e3:g} kN{times(decay.damping, certificate)}, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
             f"; optimised with {decay.engine}",
             soft_wrap=True,
         )

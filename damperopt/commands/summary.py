@@ -49,6 +49,24 @@ SHOWN_PEAKS = (
 )
 
 
+def dampings(certificate: Certificate) -> str:
+    """The interval of dampings that a certificate covers, in words; empty where it is the design's own alone."""
+    if certificate.damping is None:
+        return ""
+    return f", every damping from {certificate.damping[0]:.6g} to {certificate.damping[1]:.6g} times that of the design"
+
+
+def times(factor: float, certificate: Certificate) -> str:
+    """A factor on the damping, where it is uncertain."""
+    return "" if certificate.damping is None else f", {factor:.4g} times the damping"
+
+
+def worst_words(worst: OperatingPoint, certificate: Certificate) -> str:
+    """Where the spectral abscissa is largest."""
+    at = times(worst.damping, certificate)
+    return f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN{at}"
+
+
 def disturbance_words(disturbance: Disturbance) -> str:
     """A disturbance in words, such as ``release of yaw angle 1 deg``."""
     parts = []
@@ -135,14 +153,14 @@ def show_analysis(
             if marginal
             else f"No critical speed between {low:g} and {high:g} m/s."
         )
-    console.print(f"Worst point: {worst.abscissa:.6f} 1/s at {worst.speed:.2f} m/s, {worst.load / 1e3:g} kN")
+    console.print(worst_words(worst, certificates[0]))
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
     for certificate in certificates:
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
-        console.print(f"Exact certificate, {goal}: {verdict}", soft_wrap=True)
+        console.print(f"Exact certificate, {goal}{dampings(certificate)}: {verdict}", soft_wrap=True)
     console.print("Not checked: " + escape("; ".join((*left_out, *leaves_out(study)))), soft_wrap=True, style="dim")
     if wave is not None:
         _show_wavelength(console, wave, study.tyre.contact.least_wave())

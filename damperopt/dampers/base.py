@@ -66,6 +66,8 @@ class Damper(Record):
     motion of its own."""
     ROTARY: ClassVar[bool] = False
     """Whether it acts about the yaw axis: strokes are then angles, and forces torques."""
+    VISCOUS: ClassVar[str] = ""
+    """The design variable that uncertain damping multiplies; empty: none."""
 
     kind: str
 
@@ -131,6 +133,29 @@ class Damper(Record):
     def is_sized(self, part: str) -> bool:
         """Whether the stiffness of a part of the chain comes from its section; the study's compliance says it."""
         return False
+
+    def damping_factors(self) -> tuple[float, float]:
+        """Least and largest factor on the damping that the requirements must survive; both 1 where it is certain."""
+        return 1.0, 1.0
+
+    def dampings(self, between: int = 5) -> list[float]:
+        """Ends of `damping_factors` and factors of even ratio between them; one alone where the damping is certain."""
+        low, high = self.damping_factors()
+        if low == high:
+            return [low]
+        return [low, *(low * (high / low) ** (k / (between + 1)) for k in range(1, between + 1)), high]
+
+    def damping_by_temperature(self) -> dict[float, float]:
+        """Factor on the damping by temperature of the oil [K]; empty where the study says nothing of temperature."""
+        return {}
+
+    def orifice_share(self) -> float | None:
+        """What of the damping is an orifice [1]; None where the study says nothing of temperature."""
+        return None
+
+    def with_damping(self, design: Mapping[str, Expr], factor: Expr) -> dict[str, Expr]:
+        """The design with its damping times a factor: what has been built stays, the oil is another."""
+        return {**design, self.VISCOUS: factor * design[self.VISCOUS]} if self.VISCOUS in design else dict(design)
 
     def damping(self, design: Mapping[str, Expr]) -> Expr | None:
         """Slope of the force over the rate at rest [N s/m]; None where no one number says it."""

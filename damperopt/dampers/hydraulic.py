@@ -23,8 +23,8 @@ from ..strength.cylinder import (
     rod_length,
     rod_stiffness,
 )
-from .base import Context, Damper
-from .oil import Oil, damping_factor
+from .base import Context
+from .oil import Oiled, damping_factor
 
 __all__ = ["Hydraulic", "Orifice"]
 
@@ -38,7 +38,7 @@ class Orifice(Record):
     """Damper speed below which the smooth version is rounded [m/s]."""
 
 
-class Hydraulic(Damper):
+class Hydraulic(Oiled):
     """Through-rod hydraulic damper, F = c_lambda v, with an orifice F = c_lambda v + c_2 v |v|."""
 
     VARIABLES: ClassVar = (DesignVariable("c_lambda", "N s/m", r"$c_\lambda$", "damping of the damper", example="1e4 N s/m"),)
@@ -48,12 +48,11 @@ class Hydraulic(Damper):
     STROKE: ClassVar = DesignVariable("s_damper", "m", "$s_d$", "stroke of the damper to one side", example="10 mm")
     ELASTIC: ClassVar = ("damper",)
     SIZES: ClassVar = (AREA, ROD, STROKE)
+    VISCOUS: ClassVar = "c_lambda"
 
     kind: Literal["hydraulic"] = "hydraulic"
     orifice: Orifice | None = None
     """Quadratic part of the force."""
-    oil: Oil | None = None
-    """Its temperature; left out: that at which the damping is given."""
     series_stiffness: SeriesStiffness | None = None
     """Of oil column, rod and brackets, in series with the damper [N/m]."""
     bore: Length | None = None

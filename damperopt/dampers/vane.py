@@ -15,8 +15,8 @@ from ..quantities.named import DesignVariable
 from ..quantities.record import Length, Record, Stress, refuse
 from ..quantities.units import Quantity
 from ..strength.materials import allowable_stress
-from .base import Context, Damper
-from .oil import Oil, damping_factor
+from .base import Context
+from .oil import Oiled, damping_factor
 
 __all__ = ["RotaryOrifice", "Vane"]
 
@@ -30,7 +30,7 @@ class RotaryOrifice(Record):
     """Rate below which the smooth version is rounded [rad/s]."""
 
 
-class Vane(Damper):
+class Vane(Oiled):
     """Rotary vane damper, T = c psi' + c_2 psi' |psi'|, in series with the stiffness of its oil; sized by torque and pressure.
 
     Vanes of height h and width b at the mean radius R displace D = n h b R of oil per radian, so that T = p D.
@@ -41,6 +41,8 @@ class Vane(Damper):
         DesignVariable("c_vane", "N m s/rad", "$c_v$", "damping of the vane damper about the yaw axis", example="1 kN m s/rad"),
     )
 
+    VISCOUS: ClassVar = "c_vane"
+
     kind: Literal["vane"]
     mean_radius: Length
     """R, of the middle of a vane from the yaw axis [m]."""
@@ -50,8 +52,6 @@ class Vane(Damper):
     """n, with as many fixed partitions between them [1]."""
     orifice: RotaryOrifice | None = None
     """Quadratic part of the torque."""
-    oil: Oil | None = None
-    """Its temperature; left out: that at which the damping is given."""
     displacement: Annotated[float, Quantity("m^3/rad", above=0, example="1e-4 m^3/rad")] | None = None
     """D, where it is given: then the oil is compressible, and the vanes are made at least as large [m^3/rad]."""
     sweep: Annotated[float, Quantity("rad", above=0, below=3.1415, example="50 deg")] = 0.8726646259971648

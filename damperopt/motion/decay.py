@@ -45,6 +45,9 @@ MORE_CYCLES = 2
 DIFFERENCE = 1e-4
 """Relative step of the differences with respect to the numbers of a study."""
 
+REMEMBERED = 8
+"""Designs whose motions are remembered: one with its dampings."""
+
 DIVERGED = 100.0
 """Growth of the yaw angle at which a simulation is given up: the ratio is then this large, or larger."""
 
@@ -54,7 +57,8 @@ class DecayPoint:
     """Decay at one speed [m/s] and load [N].
 
     `gradient` holds d ln(ratio)/d ln(design variable), empty if not asked for; `time` is when the ratio is read [s]; `peaks`
-    are the largest magnitudes of `PEAKS` and `peak_gradients` (5, n) those of their logarithms, where they size the parts.
+    are the largest magnitudes of `PEAKS` and `peak_gradients` (5, n) those of their logarithms, where they size the parts;
+    `damping` is the factor on the design's damping.
     """
 
     speed: float
@@ -64,12 +68,18 @@ class DecayPoint:
     time: float
     peaks: np.ndarray
     peak_gradients: np.ndarray
+    damping: float = 1.0
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Speed, load, factor on the damping."""
+        return self.speed, self.load, self.damping
 
 
 class DecayAnalysis:
     """Decay of a study's gear, for any design; its integrators are built with the first motion, and stay.
 
-    The points of the last design are remembered: the search for the worst and that for peaks look at the same speeds.
+    The points of the last designs are remembered: the search for the worst and that for peaks look at the same speeds.
 
     Parameters
     ----------
@@ -85,8 +95,7 @@ class DecayAnalysis:
         self.model = LinearModel(study) if model is None else model
         self._dae: DAE = build(symbolic(study), Smooth())
         self._data = np.array(data_values(study))
-        self._design: tuple[float, ...] = ()
-        self._known: dict[tuple[float, float, bool], DecayPoint] = {}
+        self._known: dict[tuple[float, ...], dict[tuple[float, float, bool], DecayPoint]] = {}
         at = [self._dae.design, self._dae.speed, self._dae.load, self._dae.data]
         slopes = ca.jacobian(self._dae.relaxed, self._dae.design) @ ca.diag(self._dae.design)
         self._start = ca.Function("start", [self._dae.x, *at], [self._dae.relaxed, ca.densify(slopes)])
@@ -143,12 +152,12 @@ class DecayAnalysis:
         if data is not None:
             return self._simulated(design, speed, load, gradient, data)
         of_design = tuple(design[name] for name in self._dae.design_names)
-        if of_design != self._design:
-            self._design, self._known = of_design, {}
-        key = (float(speed), float(load), gradient)
-        if key not in self._known:
-            self._known[key] = self._simulated(design, speed, load, gradient, self._data)
-        return self._known[key]
+        if of_design not in self._known:
+            self._known = dict([*self._known.items()][1 - REMEMBERED :]) | {of_design: {}}
+        known, key = self._known[of_design], (float(speed), float(load), gradient)
+        if key not in known:
+            known[key] = self._simulated(design, speed, load, gradient, self._data)
+        return known[key]
 
     def _simulated(
         self, design: Mapping[str, float], speed: float, load: float, gradient: bool, data: np.ndarray

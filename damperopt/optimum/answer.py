@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..quantities.temperature import ZERO_CELSIUS
 from ..results import ConstraintResult, DesignResult, LocalOptimum, Relaxation, StartResult
 from ..study.components import unit_of_name
 from ..study.study import Study
@@ -15,6 +16,7 @@ from .problem import DesignProblem
 __all__ = [
     "SAME_MASS",
     "constraint_results",
+    "damping_over_temperature",
     "decided_by",
     "infeasible_message",
     "local_optima",
@@ -131,6 +133,23 @@ def _active_bounds(problem: DesignProblem, best: EnvelopeSolution) -> tuple[Cons
             )
         )
     return tuple(found)
+
+
+def damping_over_temperature(study: Study, design: Mapping[str, float]) -> dict[str, float]:
+    """Damping with oil at the temperatures that are always asked for [N s/m], where the study says something of temperature.
+
+    Parameters
+    ----------
+    study : Study
+    design : mapping of str to float
+        Design variables by name [SI].
+
+    Examples
+    --------
+    Keys are the variable and the temperature in degC: ``c_lambda_at_-54_degC``.
+    """
+    name, found = study.damper.VISCOUS, study.damper.damping_by_temperature()
+    return {f"{name}_at_{T - ZERO_CELSIUS:.0f}_degC": factor * design[name] for T, factor in found.items()}
 
 
 def decided_by(constraints: Sequence[ConstraintResult], mass: float) -> dict[str, float]:

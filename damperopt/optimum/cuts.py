@@ -27,12 +27,12 @@ def monomials(x: Any) -> Any:
 
 @dataclass(frozen=True)
 class Cut:
-    """ln(decay ratio), or ln(peak), at one speed and load about one design.
+    """ln(decay ratio), or ln(peak), at one speed, load and damping about one design.
 
     Attributes
     ----------
-    speed, load : float
-        [m/s], [N]
+    place : tuple of float
+        Speed [m/s], load [N], factor on the damping.
     value : float
         At the centre.
     gradient, centre : ndarray
@@ -41,18 +41,27 @@ class Cut:
         (n, n) approximate second derivatives.
     """
 
-    speed: float
-    load: float
+    place: tuple[float, float, float]
     value: float
     gradient: np.ndarray
     centre: np.ndarray
     curvature: np.ndarray
 
+    @property
+    def speed(self) -> float:
+        """[m/s]"""
+        return self.place[0]
+
+    @property
+    def load(self) -> float:
+        """[N]"""
+        return self.place[1]
+
     @classmethod
     def constant(cls, value: float, variables: int) -> Cut:
         """The same everywhere, as of no speed and load."""
         nothing = np.zeros(variables)
-        return cls(np.nan, np.nan, value, nothing, nothing, np.zeros((variables, variables)))
+        return cls((np.nan, np.nan, np.nan), value, nothing, nothing, np.zeros((variables, variables)))
 
     def at(self, x: np.ndarray) -> float:
         """Its value at scaled design variables."""
@@ -68,11 +77,11 @@ class Cut:
 def about(
     problem: DesignProblem,
     design: Mapping[str, float],
-    numbers: Sequence[tuple[float, float, float, np.ndarray]],
+    numbers: Sequence[tuple[tuple[float, float, float], float, np.ndarray]],
     before: Sequence[Cut | None],
     learning_step: float,
 ) -> list[Cut]:
-    """Cuts of (speed, load, value, d ln value/d ln design) about a design; curvature by symmetric rank-one updates.
+    """Cuts of (place, value, d ln value/d ln design) about a design; curvature by symmetric rank-one updates.
 
     Parameters
     ----------
@@ -89,9 +98,9 @@ def about(
     x = problem.scaled(design)[:n]
     slopes = np.array([1.0 if v.logarithmic else 1 / design[v.name] for v in problem.variables[:n]])
     cuts = []
-    for (speed, load, value, gradient), last in zip(numbers, before, strict=True):
+    for (place, value, gradient), last in zip(numbers, before, strict=True):
         scaled = gradient * slopes
-        cuts.append(Cut(speed, load, float(np.log(value)), scaled, x, _curvature(last, x, scaled, learning_step)))
+        cuts.append(Cut(place, float(np.log(value)), scaled, x, _curvature(last, x, scaled, learning_step)))
     return cuts
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -34,15 +34,23 @@ LEARNING_STEP = 1e-5
 
 @dataclass(frozen=True)
 class DampingPoint:
-    """Damping ratio of the yaw mode at a speed [m/s] and a load [N]."""
+    """Damping ratio of the yaw mode at a speed [m/s], a load [N] and a factor on the damping."""
 
     speed: float
     load: float
     ratio: float
+    damping: float = 1.0
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Speed, load, factor on the damping."""
+        return self.speed, self.load, self.damping
 
 
 def least_damping(problem: DesignProblem, design: Mapping[str, float]) -> list[DampingPoint]:
-    """Dips of the damping ratio of the yaw mode over the speed, the least first; a yaw that does not oscillate has none.
+    """Dips of the damping ratio of the yaw mode over the speed at each damping, the least first.
+
+    A yaw that does not oscillate has none.
 
     Parameters
     ----------
@@ -50,6 +58,16 @@ def least_damping(problem: DesignProblem, design: Mapping[str, float]) -> list[D
     design : mapping of str to float
         Design variables by name [SI].
     """
+    damper = problem.study.damper
+    found = [
+        replace(point, damping=factor)
+        for factor in damper.dampings()
+        for point in _dips(problem, damper.with_damping(design, factor))
+    ]
+    return sorted(found, key=lambda point: point.ratio)
+
+
+def _dips(problem: DesignProblem, design: Mapping[str, float]) -> list[DampingPoint]:
     gear, envelope = problem.model.at(design), problem.study.envelope
     low, high, found = envelope.speed.min, envelope.speed.max, list[DampingPoint]()
 
@@ -71,7 +89,7 @@ def least_damping(problem: DesignProblem, design: Mapping[str, float]) -> list[D
                 best = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-6 * high, "maxiter": 20})
                 point = min(point, DampingPoint(float(best.x), load, float(best.fun)), key=lambda p: p.ratio)
             found.append(point)
-    return sorted(found, key=lambda point: point.ratio)
+    return found
 
 
 class DampingHold:
@@ -92,7 +110,7 @@ class DampingHold:
         A = model.state_matrix(design, speed, load, ca.DM(problem.data))
         self._slopes = ca.Function("slopes", [design, speed, load], [A, ca.densify(ca.jacobian(ca.vec(A), design))])
         self._angle, self._rate = (model.state_names.index(name) for name in ("yaw_angle", "yaw_rate"))
-        self._held, self._last = list[tuple[float, float]](), list[Cut]()
+        self._held, self._last = list[tuple[float, float, float]](), list[Cut]()
 
     @property
     def required(self) -> float:
@@ -105,29 +123,31 @@ class DampingHold:
         """Dips of the damping ratio; the low ones are held from now on."""
         dips = least_damping(self._problem, design)
         for dip in [p for p in dips if p.ratio <= NEAR * max(dips[0].ratio, self.required)][: self._most]:
-            self._held = [held for held in self._held if not _same((dip.speed, dip.load), held)]
-            self._held = [*self._held, (dip.speed, dip.load)][-self._most :]
+            self._held = [held for held in self._held if not _same(dip.place, held)]
+            self._held = [*self._held, dip.place][-self._most :]
         return dips
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
         """1 - ratio/required at the held points about `design`: at most 0 is required."""
         numbers = []
-        values = np.array([design[name] for name in self._problem.design_names])
-        for speed, load in self._held:
+        for place in self._held:
+            speed, load, factor = place
+            scaled = self._problem.study.damper.with_damping(design, factor)
+            values = np.array([scaled[name] for name in self._problem.design_names])
             A, slopes = (found.full() for found in self._slopes(values, speed, load))
             s, v, w = yaw_mode(A, self._angle, self._rate)
             if np.isnan(s):  # nothing oscillates: met, with room
-                numbers.append((speed, load, math.exp(-1), np.zeros(values.size)))
+                numbers.append((place, math.exp(-1), np.zeros(values.size)))
                 continue
             n = len(A)
             ds = np.array([w @ column.reshape(n, n, order="F") @ v for column in slopes.T]) * values
             ratio = -s.real / abs(s)
             slope = -ds.real / abs(s) + s.real * (s.conjugate() * ds).real / abs(s) ** 3
-            numbers.append((speed, load, math.exp(1 - ratio / self.required), -slope / self.required))
-        before = [next((c for c in self._last if _same(n[:2], (c.speed, c.load))), None) for n in numbers]
+            numbers.append((place, math.exp(1 - ratio / self.required), -slope / self.required))
+        before = [next((c for c in self._last if _same(n[0], c.place)), None) for n in numbers]
         self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
 
 
-def _same(point: tuple[float, float], held: tuple[float, float]) -> bool:
-    return point[1] == held[1] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
+def _same(point: tuple[float, ...], held: tuple[float, ...]) -> bool:
+    return point[1:] == held[1:] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])

@@ -4,12 +4,12 @@ step, simulate again, until the step is nothing."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..motion.decay import DecayPoint
-from ..stability.worst import worst_points
 from .cuts import Cut, about
 from .damping_exchange import DampingHold, DampingPoint
 from .exchange import EnvelopeSolution, allowed_abscissa, missed_points
@@ -58,30 +58,38 @@ class DecayHold:
     ----------
     solver : NlpSolver
         Of a study with a decay requirement.
-    more : sequence of (speed, load)
+    more : sequence of (speed, load, damping factor)
         Held in any case [m/s], [N].
     """
 
-    def __init__(self, solver: NlpSolver, more: Sequence[tuple[float, float]] = ()):
+    def __init__(self, solver: NlpSolver, more: Sequence[tuple[float, ...]] = ()):
         self._problem, self._analysis = solver.problem, solver.decay
-        self._always, self._held = list(more), list[tuple[float, float]]()
+        self._always, self._held = list(more), list[tuple[float, ...]]()
         self._last: list[Cut] = []
         self._last_peaks: list[Cut] = []
 
     def worst(self, design: Mapping[str, float], refined: bool) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
-        peaks = self._analysis.worst(design, refined)
+        damper = self._problem.study.damper
+        found = [
+            replace(point, damping=factor)
+            for factor in dict.fromkeys(damper.damping_factors())
+            for point in self._analysis.worst(damper.with_damping(design, factor), refined)
+        ]
+        peaks = sorted(found, key=lambda point: -point.ratio)
         for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
-            self._held = [held for held in self._held if not _moved((peak.speed, peak.load), held)]
-            self._held = [*self._held, (peak.speed, peak.load)][len(self._always) - CUTS :]
+            self._held = [held for held in self._held if not _moved(peak.place, held)]
+            self._held = [*self._held, peak.place][len(self._always) - CUTS :]
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
         """Decay at the held points about `design`."""
-        points = [self._analysis.at(design, *place, gradient=True) for place in (*self._always, *self._held)]
-        numbers = [(p.speed, p.load, p.ratio, p.gradient) for p in points]
+        damper, numbers = self._problem.study.damper, []
+        for speed, load, factor in (*self._always, *self._held):
+            p = self._analysis.at(damper.with_damping(design, factor), speed, load, gradient=True)
+            numbers.append(((speed, load, factor), p.ratio, p.gradient))
         # a speed that has moved keeps what was learnt
-        before = [next((c for c in self._last if _moved(n[:2], (c.speed, c.load))), None) for n in numbers]
+        before = [next((c for c in self._last if _moved(n[0], c.place)), None) for n in numbers]
         self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
 
@@ -91,22 +99,22 @@ class DecayHold:
             return []
         _, places = self._analysis.largest_peaks(design, refined)
         points = [self._analysis.at(design, *place, gradient=True) for place in places]
-        numbers = [(p.speed, p.load, p.peaks[k], p.peak_gradients[k]) for k, p in enumerate(points)]
+        numbers = [((p.speed, p.load, 1.0), p.peaks[k], p.peak_gradients[k]) for k, p in enumerate(points)]
         before: Sequence[Cut | None] = self._last_peaks or [None] * len(points)
         self._last_peaks = about(self._problem, design, numbers, before, PEAK_LEARNING_STEP)
         return self._last_peaks
 
 
-def _moved(point: tuple[float, float], held: tuple[float, float]) -> bool:
-    return point[1] == held[1] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
+def _moved(point: tuple[float, ...], held: tuple[float, ...]) -> bool:
+    return point[1:] == held[1:] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
 
 
 def solve_with_decay(
     solver: NlpSolver,
     start: Mapping[str, float],
-    points: Sequence[tuple[float, float]],
+    points: Sequence[tuple[float, ...]],
     form: type[Program],
-    decay_points: Sequence[tuple[float, float]] = (),
+    decay_points: Sequence[tuple[float, ...]] = (),
     **options: Any,
 ) -> EnvelopeSolution:
     """Local optimum that meets the decay requirement at every speed, from a design that meets the rest.
@@ -116,11 +124,11 @@ def solve_with_decay(
     solver : NlpSolver
     start : mapping
         Design variables by name [SI].
-    points : sequence of (speed, load)
+    points : sequence of (speed, load, damping factor)
         Where stability is imposed in the first round.
     form : type
         Program class.
-    decay_points : sequence of (speed, load)
+    decay_points : sequence of (speed, load, damping factor)
         Where decay is held besides the peaks that are found.
     **options : object
         Passed to `Program.instance`.
@@ -145,7 +153,7 @@ def solve_with_decay(
             continue
         step = np.abs(solution.x - solver.problem.scaled(design))[: len(design)].max()
         design = solution.design
-        worst = worst_points(solver.problem.model.at(design), study.envelope, allowed)
+        worst = solver.problem.worst_points(design, allowed)
         violating = missed_points(worst, allowed, points)
         points += violating
         looked = step < REFINED or rounds % LOOK_AGAIN == 0
@@ -166,7 +174,7 @@ MODELLED = ("cuts", "damping_cuts")
 class _Holds:
     """Everything that is held by models about a design: decay and peaks of motions, damping ratio of the yaw mode."""
 
-    def __init__(self, solver: NlpSolver, decay_points: Sequence[tuple[float, float]]):
+    def __init__(self, solver: NlpSolver, decay_points: Sequence[tuple[float, ...]]):
         self._study = solver.problem.study
         required = self._study.required
         self._motions = None if required.decay is None else DecayHold(solver, decay_points)
@@ -200,7 +208,7 @@ def _model_error(before: Sequence[Cut], after: Sequence[Cut]) -> float:
     """Largest difference from what the models of the last round say; that of a bad one without any."""
     if not after:
         return 0.0
-    pairs = ((c, next((b for b in before if _moved((c.speed, c.load), (b.speed, b.load))), None)) for c in after)
+    pairs = ((c, next((b for b in before if _moved(c.place, b.place)), None)) for c in after)
     errors = [abs(cut.value - model.at(cut.centre)) for cut, model in pairs if model is not None]
     return max(errors, default=1.0)
 

@@ -10,7 +10,6 @@ import casadi as ca
 import numpy as np
 
 from ..results import Infeasibility, OperatingPoint, Relaxation
-from ..stability.worst import worst_points
 from .decay_exchange import solve_with_decay
 from .exchange import first_points
 from .local import best_local
@@ -168,7 +167,7 @@ def _elastic(
     for _ in range(ROUNDS):
         solution = solver.solve(design, points, form, relaxed=relaxed)
         design = solution.design
-        worst = worst_points(problem.model.at(design), problem.study.envelope)
+        worst = problem.worst_points(design)
         outcome = _outcome(solver, design, worst[0])
         if all(slack <= ENOUGH or name in relaxed for name, slack in outcome.slacks.items()):
             outcomes.append(outcome)
@@ -177,9 +176,9 @@ def _elastic(
         assert solution.margin is not None
         allowed = -solution.margin - problem.study.solver.margin_reserve / 2
         violating = [p for p in worst if p.abscissa > allowed]
-        if not violating or any((violating[0].speed, violating[0].load) == point for point in points):
+        if not violating or any(violating[0].place == point for point in points):
             return outcomes, True
-        points += [(p.speed, p.load) for p in violating]
+        points += [p.place for p in violating]
     return outcomes, False
 
 

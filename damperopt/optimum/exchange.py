@@ -9,7 +9,6 @@ import numpy as np
 
 from ..motion.decay import DecayPoint
 from ..results import OperatingPoint
-from ..stability.worst import worst_points
 from ..study.study import Study
 from .damping_exchange import DampingPoint
 from .program import HurwitzProgram, Program
@@ -51,17 +50,18 @@ class EnvelopeSolution:
     damping: tuple[DampingPoint, ...] = ()
 
 
-def first_points(solver: NlpSolver) -> list[tuple[float, float]]:
-    """Both ends and the geometric middle of the speed range, at every load (or both ends of a load range)."""
+def first_points(solver: NlpSolver) -> list[tuple[float, ...]]:
+    """Both ends and the geometric middle of the speed range, at every load (or both ends of a load range) and damping's end."""
     envelope = solver.problem.study.envelope
     low, high = envelope.speed.min, envelope.speed.max
-    return [(V, F_z) for F_z in envelope.loads for V in dict.fromkeys((low, (low * high) ** 0.5, high))]
+    factors = dict.fromkeys(solver.problem.study.damper.damping_factors())
+    return [(V, F, c) for c in factors for F in envelope.loads for V in dict.fromkeys((low, (low * high) ** 0.5, high))]
 
 
 def solve_envelope(
     solver: NlpSolver,
     start: Mapping[str, float],
-    points: Sequence[tuple[float, float]],
+    points: Sequence[tuple[float, ...]],
     form: type[Program] = HurwitzProgram,
 ) -> EnvelopeSolution:
     """Local optimum from `start`, exchanged until the margin holds at every speed and load.
@@ -71,7 +71,7 @@ def solve_envelope(
     solver : NlpSolver
     start : mapping
         Design variables by name [SI].
-    points : sequence of (speed, load)
+    points : sequence of (speed, load, damping factor)
         Where stability is imposed in the first round.
     form : type
         `HurwitzProgram` or `FactorProgram`.
@@ -88,7 +88,7 @@ def solve_envelope(
         solution = solver.solve(design, points, form)
         if not solution.converged:
             return EnvelopeSolution(solution, (), rounds, False)
-        worst = worst_points(solver.problem.model.at(solution.design), study.envelope, allowed)
+        worst = solver.problem.worst_points(solution.design, allowed)
         still = exact or abs(solution.objective - before) <= STILL_CORRECTION * solution.objective
         before = solution.objective
         if worst[0].abscissa <= allowed and still:
@@ -107,11 +107,11 @@ def allowed_abscissa(study: Study) -> float:
 
 
 def missed_points(
-    worst: Sequence[OperatingPoint], allowed: float, points: Sequence[tuple[float, float]]
-) -> list[tuple[float, float]]:
-    """Speeds and loads above an abscissa that are not among the points yet."""
-    return [(p.speed, p.load) for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
+    worst: Sequence[OperatingPoint], allowed: float, points: Sequence[tuple[float, ...]]
+) -> list[tuple[float, ...]]:
+    """Speeds, loads and damping factors above an abscissa that are not among the points yet."""
+    return [p.place for p in worst if p.abscissa > allowed and not any(_close(p, q) for q in points)]
 
 
-def _close(point: OperatingPoint, used: tuple[float, float]) -> bool:
-    return abs(point.speed - used[0]) <= SAME_POINT * used[0] and abs(point.load - used[1]) <= SAME_POINT * used[1]
+def _close(point: OperatingPoint, used: tuple[float, ...]) -> bool:
+    return all(abs(own - other) <= SAME_POINT * other for own, other in zip(point.place, (*used, 1.0), strict=False))

@@ -19,7 +19,7 @@ MUCH_BETTER = 0.1
 """Part of the required decay ratio below which a start decays so much better that it lies in no basin of its own."""
 
 
-def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
+def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, ...]]) -> EnvelopeSolution:
     """Local optimum from `start` by the Hurwitz program; where that fails by the factor program, improved by the first.
 
     Parameters
@@ -27,7 +27,7 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
     solver : NlpSolver
     start : mapping
         Design variables by name [SI].
-    points : sequence of (speed, load)
+    points : sequence of (speed, load, damping factor)
         Where stability is imposed in the first round.
 
     Returns
@@ -48,8 +48,8 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
 def held_again(
     solver: NlpSolver,
     found: EnvelopeSolution,
-    points: Sequence[tuple[float, float]] = (),
-    decay_points: Sequence[tuple[float, float]] = (),
+    points: Sequence[tuple[float, ...]] = (),
+    decay_points: Sequence[tuple[float, ...]] = (),
 ) -> EnvelopeSolution:
     """An optimum solved again with points that its exchange has missed.
 
@@ -57,7 +57,7 @@ def held_again(
     ----------
     solver : NlpSolver
     found : EnvelopeSolution
-    points, decay_points : sequence of (speed, load)
+    points, decay_points : sequence of (speed, load, damping factor)
         For stability and for decay [m/s], [N].
 
     Returns
@@ -71,7 +71,7 @@ def held_again(
     return solve_with_decay(solver, design, points, form, decay_points)
 
 
-def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, float]]) -> EnvelopeSolution:
+def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, ...]]) -> EnvelopeSolution:
     found = solve_envelope(solver, start, points, HurwitzProgram)
     if found.solved:
         return found

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -21,7 +21,9 @@ from ..motion.measure import PEAKS
 from ..objectives import sized_layout
 from ..ports.sizing import Size
 from ..quantities.named import DesignVariable
+from ..results import OperatingPoint
 from ..stability.linear import LinearModel
+from ..stability.over_damping import worst_over_damping
 from ..stability.screening import Screening
 from ..strength.limit_event import peaks_of
 from ..study.study import Study
@@ -155,12 +157,34 @@ class DesignProblem:
         """The gear with any stiffness and damping, built when it is first asked for."""
         return Screening(searched_study(self.study))
 
-    def corrections(self, design: Mapping[str, float], speeds: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    def worst_points(self, design: Mapping[str, float], enough: float = np.inf) -> list[OperatingPoint]:
+        """Local maxima of the spectral abscissa of a design over envelope and dampings, as `worst_over_damping` has them."""
+        return worst_over_damping(self.model, self.study, design, enough)
+
+    def abscissae(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
+        """Spectral abscissa of a design at points (m, 3) of speed, load and factor on the damping, (m,) [1/s]."""
+        return self._at(self.model, design, points, lambda gear, V, F: gear.abscissa(V, F))
+
+    def matrices(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
+        """State matrices of the rational model at such points, (m, n, n)."""
+        return self._at(self.search_model, design, points, lambda gear, V, F: gear.matrices(V, F))
+
+    def _at(self, model: LinearModel, design: Mapping[str, float], points: np.ndarray, ask: Callable[..., Any]) -> np.ndarray:
+        """Of the gears with each factor, asked at their points together."""
+        found: list[Any] = [None] * len(points)
+        for factor in dict.fromkeys(points[:, 2]):
+            where = np.flatnonzero(points[:, 2] == factor)
+            gear = model.at(self.study.damper.with_damping(design, float(factor)))
+            for i, value in zip(where, ask(gear, points[where, 0], points[where, 1]), strict=True):
+                found[i] = value
+        return np.array(found)
+
+    def corrections(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
         """What the exact abscissa of a design has beyond that of the rational model that the program holds, (m,) [1/s]."""
         if self.search_model is self.model:
-            return np.zeros(len(speeds))
-        exact, rational = (model.at(design).abscissa(speeds, loads) for model in (self.model, self.search_model))
-        return exact - rational
+            return np.zeros(len(points))
+        rational = self._at(self.search_model, design, points, lambda gear, V, F: gear.abscissa(V, F))
+        return self.abscissae(design, points) - rational
 
     # plain functions of a design, for reports, tests and other optimisers. `factors` are simulated over estimated peaks of
     # the limit event, of `factors_of`; left out, a torque must be the limit event. None of them simulates.

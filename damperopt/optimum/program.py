@@ -8,8 +8,8 @@ Each comes with two ways to say "stable with the margin at these speeds and load
 * Factors: the shifted polynomial equals a product of factors s^2 + b s + c and s + r with b, c, r >= 0. Regular at such
   corners, but it stops where a real root passes from one factor to another.
 
-Stability is imposed at slots, each a speed and a load given as parameters, so that one program serves every round of the
-exchange; slots without a point impose nothing.
+Stability is imposed at slots, each a speed, a load and a factor on the damping as parameters, so that one program serves every
+round of the exchange; slots without a point impose nothing.
 
 Decay is imposed by cuts: ln(decay ratio) at one speed and load with its gradient, both from an integrator, and the curvature
 that earlier gradients show, as a function of the scaled variables about the design where it was simulated. The exchange
@@ -44,7 +44,8 @@ __all__ = [
     "relaxable",
 ]
 
-Points = Sequence[tuple[float, float]]
+Points = Sequence[tuple[float, ...]]
+"""Speed, load, and a factor on the damping; left out, 1."""
 
 CUTS = 12
 """Decay cuts that a program has room for."""
@@ -81,7 +82,8 @@ class Program(Protocol):
     rows : Blocks
         Of g: ``strength`` and geometry; ``decay``; ``damping`` of the yaw mode; ``stability``.
     parameters : Blocks
-        Of p: ``data``, ``load_limit``; ``speeds``, ``loads``, ``rates`` and ``corrections`` of the slots; with simulated peaks
+        Of p: ``data``, ``load_limit``; ``speeds``, ``loads``, ``rates``, ``corrections`` and ``factors`` on the damping of the
+        slots; with simulated peaks
         ``simulated``, a switch, and ``peaks``, their models; with a decay requirement ``cuts``; with a damping ratio
         ``damping_cuts``; ``stability``.
     """
@@ -125,10 +127,10 @@ class _Common:
         n = len(problem.design_names)
         design, sizes = physical[:n], physical[n:]
         data, load_limit = ca.SX.sym("data", len(problem.data)), ca.SX.sym("load_limit")
-        V, F_z, rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "rate"))
+        V, F_z, factor, rate = (ca.SX.sym(name, slots) for name in ("V", "F_z", "factor", "rate"))
         corrections = ca.SX.sym("corrections", slots)
         self.parameters = {"data": data, "load_limit": load_limit, "speeds": V, "loads": F_z, "rates": rate}
-        self.parameters |= {"corrections": corrections}
+        self.parameters |= {"corrections": corrections, "factors": factor}
         factors: Any = ESTIMATED
         known = monomials(self.x[: len(problem.design_names)])
         if problem.study.required.limit_event == "simulated":
@@ -154,7 +156,12 @@ class _Common:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
         polynomial = _polynomial(problem)
-        slots_in = ([design, data, V[i], F_z[i], corrections[i], rate[i]] for i in range(slots))
+
+        def named(values: ca.SX) -> dict[str, ca.SX]:
+            return {name: values[i] for i, name in enumerate(problem.design_names)}
+
+        of_slot = [ca.vertcat(*problem.study.damper.with_damping(named(design), factor[i]).values()) for i in range(slots)]
+        slots_in = ([of_slot[i], data, V[i], F_z[i], corrections[i], rate[i]] for i in range(slots))
         self.slots = Slots([[1.0, *ca.vertsplit(polynomial(*given))] for given in slots_in], rate)
 
     def numbers(
@@ -168,15 +175,15 @@ class _Common:
     ) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
         """Parameters by block; per slot the roots at `design`, shifted by the margin, and the rate that scales them to 1."""
         problem = self.problem
-        filled = [*points, *[points[-1]] * (self._slots - len(points))]
-        V, F_z = np.array(filled).T
+        filled = _columns([*points, *[points[-1]] * (self._slots - len(points))])
+        V, F_z, factor = filled.T
         shift = problem.study.solver.margin_reserve
         shift += problem.study.required.stability_margin if margin is None else margin
-        corrections = problem.corrections(design, V, F_z)
-        roots = np.linalg.eigvals(problem.search_model.at(design).matrices(V, F_z)) + shift + corrections[:, None]
+        corrections = problem.corrections(design, filled)
+        roots = np.linalg.eigvals(problem.matrices(design, filled)) + shift + corrections[:, None]
         rates = np.exp(np.log(np.abs(roots) + SLOWEST_ROOT).mean(axis=1))
         values = {"data": problem.data, "load_limit": problem.load_limit, "speeds": V, "loads": F_z, "rates": rates}
-        values["corrections"] = corrections
+        values |= {"corrections": corrections, "factors": factor}
         n = len(problem.design_names)
         if "peaks" in self.parameters:
             models = [peak.about_zero() for peak in peaks] or [Cut.constant(0.0, n).about_zero()] * len(PEAKS)
@@ -194,6 +201,11 @@ class _Common:
         x0 = np.clip(self.problem.scaled(design), lower, upper)
         around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
         return Limits(np.maximum(lower, x0 - around), np.minimum(upper, x0 + around), x0)
+
+
+def _columns(points: Points) -> np.ndarray:
+    """(m, 3) speeds, loads and factors on the damping."""
+    return np.array([(*point, 1.0)[:3] for point in points])
 
 
 def _polynomial(problem: DesignProblem) -> ca.Function:
@@ -326,7 +338,7 @@ class _ElasticProgram(_Program):
         needed = np.zeros(len(self._names) - 1)
         exceeded = list(problem.rows(design, _factors(problem, design, peaks)).values())
         needed[: len(exceeded)] = np.maximum(exceeded, 0.0)
-        abscissa = float(problem.model.at(design).abscissa(*np.array(points).T).max())
+        abscissa = float(problem.abscissae(design, _columns(points)).max())
         kept = min(self._required, -abscissa - 2 * problem.study.solver.margin_reserve)
         slack, margin = np.where(may_move[:-1], needed + SLACK, 0.0), kept if may_move[-1] else self._required
         values, roots, rates = self._common.numbers(design, points, cuts, peaks, damping_cuts, margin)

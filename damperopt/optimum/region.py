@@ -78,7 +78,8 @@ def feasible_region(
     Returns
     -------
     FeasibleRegion
-        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear and of rigid chains alone.
+        A picture, not a proof: stability is looked at on a few speeds, decay by the linear gear and of rigid chains alone;
+        uncertain damping at both ends of its interval.
     """
     problem = DesignProblem(study)
     names = problem.design_names
@@ -92,20 +93,39 @@ def feasible_region(
         factors = problem.factors_of(design, limit_event)
     found = problem.over_designs(designs, factors)
     k_psi, c_psi = found["torsional_stiffness"], found["torsional_damping"]
-    if problem.plain and problem.search_model is problem.model:
-        stability = problem.screening.least_conditions(k_psi, c_psi, worst)
-        near = _beside_the_limit(stability.reshape(X.shape)).ravel()
-        abscissae = problem.screening.worst_abscissae(k_psi[near], c_psi[near], worst, SPEEDS)
-        stability[near] = -study.required.stability_margin - abscissae  # even enough for a curve between the nodes
-    else:
-        stability = -study.required.stability_margin - worst_abscissae_of(problem.model, study, designs, worst)
+    factors_on_c = dict.fromkeys(study.damper.damping_factors())
+    stability = np.min([_stability(problem, designs, (k_psi, c * c_psi), c, worst, X.shape) for c in factors_on_c], axis=0)
     rows = {name: found["rows"][:, i].reshape(X.shape) for i, name in enumerate(problem.constraint_names)}
     decay = study.required.decay
     if decay is not None and problem.plain:
         ratio = np.full(X.size, np.inf)
-        ratio[stability > 0] = problem.screening.linear_decay(k_psi[stability > 0], c_psi[stability > 0], PER_CYCLE)
+        kept = stability > 0
+        ratio[kept] = np.max(
+            [problem.screening.linear_decay(k_psi[kept], c * c_psi[kept], PER_CYCLE) for c in factors_on_c], axis=0
+        )
         rows["decay_ratio"] = np.log(np.maximum(ratio, 1e-12) / decay.ratio).reshape(X.shape)
     return FeasibleRegion(x_name, y_name, x, y, found["mass"].reshape(X.shape), stability.reshape(X.shape), rows, dict(design))
+
+
+def _stability(
+    problem: DesignProblem,
+    designs: np.ndarray,
+    yaw: tuple[np.ndarray, np.ndarray],
+    factor: float,
+    worst: Sequence[tuple[float, float]],
+    shape: tuple[int, ...],
+) -> np.ndarray:
+    """`FeasibleRegion.stability` with a factor on the damping, which the stiffness and damping `yaw` have already."""
+    study = problem.study
+    if problem.plain and problem.search_model is problem.model:
+        stability: np.ndarray = problem.screening.least_conditions(*yaw, worst)
+        near = _beside_the_limit(stability.reshape(shape)).ravel()
+        abscissae = problem.screening.worst_abscissae(yaw[0][near], yaw[1][near], worst, SPEEDS)
+        stability[near] = -study.required.stability_margin - abscissae  # even enough for a curve between the nodes
+        return stability
+    scaled = designs.copy()
+    scaled[:, [name == study.damper.VISCOUS for name in problem.design_names]] *= factor
+    return -study.required.stability_margin - worst_abscissae_of(problem.model, study, scaled, worst)
 
 
 def _beside_the_limit(values: np.ndarray) -> np.ndarray:

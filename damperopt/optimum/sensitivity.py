@@ -46,7 +46,8 @@ def sensitivities(
     for cut, row, weight in worth:
         if analysis is None or abs(weight) <= 1e-7 * solution.objective:
             continue
-        for name, slope in analysis.data_gradient(solution.design, cut.speed, cut.load).items():
+        design = study.damper.with_damping(solution.design, cut.place[2])
+        for name, slope in analysis.data_gradient(design, cut.speed, cut.load).items():
             for key in _inputs(study, name, cut):
                 simulated[key] = simulated.get(key, 0.0) + float(weight * slope[row])
     found = [

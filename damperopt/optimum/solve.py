@@ -91,7 +91,7 @@ class LocalSolution:
     form : str
         Name of the program, and
     points, cuts, peaks : tuple
-        what it was given: stability points (speed, load), decay cuts, and models of simulated peaks.
+        what it was given: stability points (speed, load, damping factor), decay cuts, and models of simulated peaks.
     converged : bool
     status : str
         IPOPT's word.
@@ -112,7 +112,7 @@ class LocalSolution:
     """
 
     form: str
-    points: tuple[tuple[float, float], ...]
+    points: tuple[tuple[float, ...], ...]
     cuts: tuple[Cut, ...]
     peaks: tuple[Cut, ...]
     converged: bool
@@ -163,7 +163,7 @@ class NlpSolver:
     def solve(
         self,
         design: Mapping[str, float],
-        points: Sequence[tuple[float, float]],
+        points: Sequence[tuple[float, ...]],
         form: type[Program] = HurwitzProgram,
         cuts: Sequence[Cut] = (),
         peaks: Sequence[Cut] = (),
@@ -176,7 +176,7 @@ class NlpSolver:
         ----------
         design : mapping
             Start, design variables by name [SI].
-        points : sequence of (speed, load)
+        points : sequence of (speed, load, damping factor)
         form : type
             Program class.
         cuts : sequence of Cut

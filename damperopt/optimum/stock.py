@@ -222,7 +222,7 @@ class StockSearch:
         heapq.heapify(self._open)
 
     def _solve(
-        self, box: _Box, start: Mapping[str, float], points: Sequence[tuple[float, float]], explained: bool = False
+        self, box: _Box, start: Mapping[str, float], points: Sequence[tuple[float, ...]], explained: bool = False
     ) -> None:
         """Bound of a box, or why it has no design."""
         try:

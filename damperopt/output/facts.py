@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..dampers.oil import orifice_area
 from ..motion.measure import PEAKS
 from ..ports.linkage import Member
 from ..ports.sizing import LimitEvent
@@ -97,8 +98,9 @@ def next_critical_speed(study: Study, gear: LinearGear) -> CriticalSpeed | None:
 
 def damper_speed(study: Study, result: DesignResult) -> float | None:
     """Peak speed of the damper in the limit event [m/s], by its linear damping; None where no one number says that."""
-    force = result.limit_event.get("damper_force")
-    damping = study.damper.damping(result.design) if result.design else None
+    force, damper = result.limit_event.get("damper_force"), study.damper
+    largest = damper.with_damping(result.design, damper.damping_factors()[1])
+    damping = damper.damping(largest) if result.design else None
     return force / float(damping) if force is not None and damping else None
 
 
@@ -127,7 +129,8 @@ def sizes(study: Study, result: DesignResult) -> list[Size]:
         if not member.variable or chosen[member.variable] is member:
             legs = [other for other in members if member.variable and other.variable == member.variable] or [member]
             found += [replace(size, group=member.part) for size in _member(study, member, legs, event)]
-    return found + [replace(size, group="damper") for size in _cylinder(study, event, result.derived | result.design)]
+    own = _cylinder(study, event, result.derived | result.design) + _orifice(study, result, event)
+    return found + [replace(size, group="damper") for size in own]
 
 
 def _event(study: Study, result: DesignResult) -> LimitEvent | None:
@@ -200,6 +203,18 @@ def _section(study: Study, member: Member, event: LimitEvent) -> tuple[str, floa
     allowable = allowable_stress(study.material, study.required.limit_factor, study.required.ultimate_factor)
     area = area_for_modulus(getattr(study.mass, member.section), getattr(event, member.load) * length / allowable)
     return f"{member.name}, root", (area / kappa_area) ** 2, 0.0
+
+
+def _orifice(study: Study, result: DesignResult, event: LimitEvent) -> list[Size]:
+    """Orifice that gives its part of the damping at the reference temperature, for strokes as fast as the limit event's."""
+    share, rate = study.damper.orifice_share(), damper_speed(study, result)
+    if not share or rate is None or study.damper.ROTARY:
+        return []
+    area = float(result.design["A_piston"] if "A_piston" in result.design else piston_area(event, study.mass))
+    c = share * result.design[study.damper.VISCOUS]
+    found = orifice_area(c, area, rate, study.mass.oil_density)
+    words = f"area of an orifice for {share:.3g} of the damping, as its first harmonic at {rate:.3g} m/s, C_d 0.65 (typical)"
+    return [Size("damper", words, found, "m^2")]
 
 
 def _cylinder(study: Study, event: LimitEvent, chosen: Mapping[str, float]) -> list[Size]:

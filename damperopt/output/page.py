@@ -94,6 +94,8 @@ def _study_of(result: DesignResult) -> Study:
         pairs.append(("decay", result.decay is not None, study.required.decay is not None))
     if result.certificate is not None:
         pairs.append(("certificate.speed", result.certificate.speed, (study.envelope.speed.min, study.envelope.speed.max)))
+        factors = study.damper.damping_factors()
+        pairs.append(("certificate.damping", result.certificate.damping, None if factors == (1.0, 1.0) else factors))
         pairs.append(("certificate.loads", result.certificate.loads, tuple(study.envelope.loads)))
     for key, found, wanted in pairs:
         if found != wanted:

@@ -30,6 +30,7 @@ __all__ = [
     "layout_words",
     "number",
     "place",
+    "times",
     "verification",
 ]
 
@@ -40,7 +41,12 @@ DERIVED = {
 }
 """What follows from a whole design; what a component chooses, it declares with its meaning."""
 
+OVER_TEMPERATURE = "damping with the oil at this temperature"
+
 KINDS = {"strength": "strength", "geometry": "geometry", "decay": "decay", "stability": "stability margin", "bound": "bounds"}
+
+BALLS = "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and load"
+
 NAMES = {"lower_lug_height": "height of the lower torque-link hinge above the axle"}
 """Keys that do not say what they are."""
 
@@ -70,6 +76,9 @@ def asked(study: Study) -> list[str]:
     ]
     if required.damping_ratio is not None:
         found.append(f"The yaw mode has at least {100 * required.damping_ratio:.3g}\u00a0% of critical damping at all of them.")
+    low, high = study.damper.damping_factors()
+    if (low, high) != (1.0, 1.0):
+        found.append(f"All requirements hold for every damping from {low:.6g} to {high:.6g} times that of the design.")
     if required.decay is not None:
         found.append(
             f"After a disturbance the yaw angle falls to {required.decay.ratio:.3g} within {required.decay.cycles} cycles, "
@@ -134,6 +143,11 @@ def layout_words(study: Study) -> str:
     return (inspect.getdoc(study.damper.LAYOUT) or "").partition("\n")[0]
 
 
+def times(factor: float) -> str:
+    """Where the damping is not that of the design."""
+    return "" if factor == 1 else f", {factor:.4g} times the damping"
+
+
 def answer(result: DesignResult) -> str:
     """The answer in one sentence."""
     if result.mass is None:
@@ -150,6 +164,7 @@ def design_rows(study: Study, result: DesignResult) -> list[Line]:
     result : DesignResult
     """
     lines, meanings = [], DERIVED | {variable.name: variable.meaning for variable in study.variables}
+    meanings |= {name: OVER_TEMPERATURE for name in result.derived if name.startswith(f"{study.damper.VISCOUS}_at_")}
     for name, value in (result.design | result.derived).items():
         variable = getattr(study.design, name, None)
         bounds = "" if variable is None else _at_bound(value, variable.min, variable.max)
@@ -211,11 +226,17 @@ def certificate(result: DesignResult) -> str:
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",
         "bernstein": "exact Bernstein bounds over rectangles of speed and load",
-        "balls": "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and load",
-    }.get(proof.method.partition(",")[0], proof.method)
+        "bernstein, damping": "exact Bernstein bounds over rectangles of speed and damping, load by load",
+        "balls, damping": "enclosures of the characteristic function with the tyre's delay over boxes of frequency, speed and "
+        "damping, load by load",
+        "balls, rectangle": BALLS,
+        "balls": BALLS,
+    }.get(proof.method, proof.method)
     speeds = _range(proof.speed, "m/s", True)
     loads = _range(proof.loads, "N", proof.over_a_range)
     where = f"margin {proof.margin:g} 1/s, every real speed from {speeds}, {loads}"
+    if proof.damping is not None:
+        where += f", every damping from {proof.damping[0]:.6g} to {proof.damping[1]:.6g} times that of the design"
     reason = f"{proof.reason[:1].upper()}{proof.reason[1:]}."
     if not proof.proved:
         return f"NOT proved: {where}. {reason}"
@@ -232,13 +253,13 @@ def verification(result: DesignResult) -> list[str]:
     if check is not None:
         found.append(
             f"Eigenvalues on {check.grid_speeds} speeds by {check.grid_loads} loads: worst {check.worst.abscissa:.6g} 1/s at "
-            f"{place(check.worst.speed, check.worst.load)}."
+            f"{place(check.worst.speed, check.worst.load)}{times(check.worst.damping)}."
         )
         found.append(f"{check.agreeing_starts} of {len(result.starts)} starts end here; KKT residual {check.kkt_residual:.1g}.")
     if decay is not None:
         kept = "kept" if decay.passed else "NOT kept"
         found.append(
-            f"Decay {kept}: {decay.ratio:.4f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.4g} m/s, "
-            f"the worst of {decay.simulations} event-exact simulations; required {decay.limit:.4f}."
+            f"Decay {kept}: {decay.ratio:.4f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.4g} m/s"
+            f"{times(decay.damping)}, the worst of {decay.simulations} event-exact simulations; required {decay.limit:.4f}."
         )
     return found

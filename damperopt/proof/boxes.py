@@ -15,7 +15,7 @@ from typing import TypeAlias
 import flint
 
 from .balls import Transit, ball, transit_of
-from .quasi import Quasipolynomial, Rows, Slice, Tyre
+from .quasi import OverDamping, Quasipolynomial, Rows, Slice, Tyre
 from .rationals import decimal
 
 __all__ = ["Box", "Enclosure", "Strip", "Strips"]
@@ -210,12 +210,13 @@ class Strips:
 
     Parameters
     ----------
-    characteristic : Quasipolynomial
+    characteristic : Quasipolynomial or OverDamping
+        Of the latter, the second variable stands in the place of the load.
     margin : float
         mu [1/s]
     """
 
-    def __init__(self, characteristic: Quasipolynomial, margin: float):
+    def __init__(self, characteristic: Quasipolynomial | OverDamping, margin: float):
         self._characteristic, self._margin = characteristic, margin
         self._slices: dict[tuple[Q, Q], Slice] = {}
         self._strips: dict[tuple[tuple[Q, Q], tuple[Q, Q]], Strip] = {}

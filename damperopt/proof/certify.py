@@ -9,13 +9,16 @@ a power of the leading coefficient that resultant is the last Hurwitz determinan
 has a zero in the range, and one point of it is stable, every point is.
 
 Zeros are counted exactly: Sturm's theorem in rational arithmetic for a range of speeds; Bernstein coefficients in
-rational arithmetic, with subdivision, for a rectangle of speeds and loads. No part of the optimiser is used.
+rational arithmetic, with subdivision, for a rectangle of speeds and loads, or of speeds and dampings at each load of a list.
+No part of the optimiser is used.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any, TypeAlias
 
 import flint
@@ -25,6 +28,7 @@ from ..results import Certificate
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from ..symbols import data_values
+from .damping import Interval, over_damping
 from .delay import certify_delay
 from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
@@ -33,6 +37,7 @@ from .zeros import zero_in_rectangle, zeros_in_range
 __all__ = ["certify"]
 
 Q: TypeAlias = flint.fmpq
+ONE = Q(1)
 
 NO_RANGE = (
     "not proved: the forces of this tyre are no polynomial in the load, and a proof over a range of loads needs one; "
@@ -85,6 +90,8 @@ def certify(
 
     if envelope.load_is_range and model.powers.load is None:
         return outcome(None, NO_RANGE, proved=False)
+    if interval := Interval.of(study):
+        return _over_damping(study, model, design, margin, interval)
     family = _Family(study, model, design, margin)
 
     # one stable point for each separate proof
@@ -117,6 +124,39 @@ def certify(
     return outcome(None, "one point is stable, and no root can cross at any speed")
 
 
+def _over_damping(
+    study: Study, model: LinearModel, design: Mapping[str, float], margin: float, interval: Interval
+) -> Certificate:
+    """The same over a rectangle of speeds and dampings, load by load."""
+    speeds, loads, boxes = (study.envelope.speed.min, study.envelope.speed.max), study.envelope.loads, 0
+
+    def outcome(verdict: Any, point: tuple[float, float, float] | None, reason: str) -> Certificate:
+        place, factor = (None, None) if point is None else (point[:2], point[2])
+        known = verdict == "proved", margin, speeds, loads, "bernstein, damping", place, reason, boxes, verdict
+        return Certificate(*known, damping=interval.factors, damping_factor=factor)
+
+    def near(V: float, load: float, factor: float) -> str:
+        return f"{_place((V, load))}, {factor:.6g} times the damping"
+
+    for load in loads:
+        family = _OverDamping(study, model, design, margin, load, interval)
+        # the corner that gives the conditions their sign
+        start = speeds[0], load, family.over.factor(float(family.ends[0]))
+        if not family.stable(*start):
+            return outcome("refuted", start, f"missed at {near(*start)}, a corner of the rectangle")
+        for condition in family.conditions():
+            found, examined = zero_in_rectangle(condition, speeds, family.ends)
+            boxes += examined
+            if found is not None:
+                point = found[0], load, family.over.factor(found[1])
+                if family.stable(*point):
+                    return outcome("undecided", None, f"undecided near {near(*point)}, where the margin is kept")
+                return outcome("refuted", point, f"missed or touched at {near(*point)}")
+    return outcome(
+        "proved", None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and dampings"
+    )
+
+
 def _place(point: tuple[float, float]) -> str:
     return f"{point[0]:.6g} m/s, {point[1] / 1e3:.6g} kN"
 
@@ -127,14 +167,15 @@ class _Family:
     def __init__(self, study: Study, model: LinearModel, design: Mapping[str, float], margin: float):
         self._gear, self._margin, self._n = model.at(design), margin, len(model.state_names)
         self._powers, self._envelope = model.powers, study.envelope
-        values = [rational(design[name]) for name in model.design_names]
+        exact = {name: rational(design[name]) for name in model.design_names}
         data, shift = [decimal(value) for value in data_values(study)], decimal(margin)
 
-        def matrix(V: Q, F: Q) -> flint.fmpq_mat:
+        def matrix(V: Q, F: Q, factor: Q = ONE) -> flint.fmpq_mat:
+            values = list(study.damper.with_damping(exact, factor).values())
             entries = evaluate(model.state_matrix, [values, [V], [F], data])
             return flint.fmpq_mat([[e + (shift if i == j else 0) for j, e in enumerate(row)] for i, row in enumerate(entries)])
 
-        self.matrix = matrix
+        self.matrix: Callable[..., flint.fmpq_mat] = matrix
         self._split: dict[float | None, dict[tuple[int, int], flint.fmpq_mat]] = {}
 
     def _parts(self, load: float) -> dict[tuple[int, int], flint.fmpq_mat]:
@@ -196,6 +237,24 @@ class _Family:
         ends = [speeds[0], *zeros, speeds[1]]
         candidates = np.array([*zeros, *((a + b) / 2 for a, b in itertools.pairwise(ends))])
         return float(candidates[self._gear.abscissa(candidates, load).argmax()])
+
+
+class _OverDamping(_Family):
+    """The same at one load as functions of speed and of what the equations are linear in, the damping or its inverse."""
+
+    def __init__(
+        self, study: Study, model: LinearModel, design: Mapping[str, float], margin: float, load: float, interval: Interval
+    ):
+        super().__init__(study, model, design, margin)
+        whole, F, speeds = self.matrix, decimal(load), (decimal(study.envelope.speed.min), decimal(study.envelope.speed.max))
+        self.over, parts = over_damping(lambda V, factor: whole(V, F, factor), self._powers.speed, speeds, interval)
+        self.matrix, self._split = (lambda V, g: whole(V, F, self.over.factor(g))), {None: parts, load: parts}
+        self._powers = replace(self._powers, load=(0, 1))
+        self.ends = [Fraction(int(g.p), int(g.q)) for g in self.over.ends]
+
+    def stable(self, V: float, load: float, factor: float) -> bool:
+        """Whether every eigenvalue lies left of the line at a speed and a factor on the damping."""
+        return self.stable_at(decimal(V), self.over.linear_in(decimal(factor)))
 
 
 def _characteristic(M: list[list[Any]], ring: Any) -> list[Any]:

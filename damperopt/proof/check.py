@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -63,21 +64,27 @@ def check_grid(study: Study, design: Mapping[str, float], model: LinearModel | N
     Returns
     -------
     GridCheck
-        A load range is sampled at 21 loads; half of the speeds are spaced evenly, half geometrically.
+        A load range is sampled at 21 loads; half of the speeds are spaced evenly, half geometrically; an interval of dampings
+        is sampled at 7.
     """
     envelope, count = study.envelope, study.solver.verification_speeds
     low, high = envelope.speed.min, envelope.speed.max
     speeds = np.union1d(np.linspace(low, high, count // 2 + 1), np.geomspace(low, high, count // 2 + 1))
-    speeds = np.clip(speeds, low, high)
+    speeds, model = np.clip(speeds, low, high), model or LinearModel(study)
     loads = np.linspace(envelope.loads[0], envelope.loads[-1], 21) if envelope.load_is_range else np.array(envelope.loads)
     V, F_z = (grid.ravel() for grid in np.meshgrid(speeds, loads))
-    abscissa = (model or LinearModel(study)).at(design).abscissa(V, F_z)
-    top = int(abscissa.argmax())
-    worst = OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]))
+    found = []
+    for factor in study.damper.dampings():
+        abscissa = model.at(study.damper.with_damping(design, factor)).abscissa(V, F_z)
+        top = int(abscissa.argmax())
+        found.append(OperatingPoint(float(V[top]), float(F_z[top]), float(abscissa[top]), factor))
+    worst = max(found, key=lambda point: point.abscissa)
     return GridCheck(worst.abscissa <= -study.required.stability_margin, len(speeds), len(loads), worst)
 
 
-def check_damping(study: Study, design: Mapping[str, float], model: LinearModel | None = None) -> tuple[float, float, float]:
+def check_damping(
+    study: Study, design: Mapping[str, float], model: LinearModel | None = None
+) -> tuple[float, float, float, float]:
     """Least damping ratio of the yaw mode on the grid of `check_grid`, with the speed and load where it is.
 
     Parameters
@@ -91,28 +98,29 @@ def check_damping(study: Study, design: Mapping[str, float], model: LinearModel 
     Returns
     -------
     tuple of float
-        Ratio, speed [m/s], load [N]; the mode is the oscillation in whose participation factors angle and rate of yaw have the
-        largest share, found anew at each point.
+        Ratio, speed [m/s], load [N], factor on the damping; the mode is the oscillation in whose participation factors angle
+        and rate of yaw have the largest share, found anew at each point.
     """
-    gear, envelope = (model or LinearModel(study)).at(design), study.envelope
-    angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
+    model, envelope = model or LinearModel(study), study.envelope
     speeds = np.geomspace(envelope.speed.min, envelope.speed.max, study.solver.verification_speeds)
-    least = (math.inf, math.nan, math.nan)
-    for load in envelope.loads:
+    least = (math.inf, math.nan, math.nan, math.nan)
+    for factor, load in itertools.product(study.damper.dampings(), envelope.loads):
+        gear = model.at(study.damper.with_damping(design, factor))
+        angle, rate = gear.index("yaw_angle"), gear.index("yaw_rate")
         for V, A in zip(speeds, gear.matrices(speeds, load), strict=True):
             roots, modes = np.linalg.eig(A)
             parts = np.abs(np.linalg.solve(modes, np.eye(len(A)))) * np.abs(modes).T  # of each state, in each mode
             shares = parts[:, [angle, rate]].sum(axis=1) / parts.sum(axis=1)
             found = [(shares[i], -roots[i].real / abs(roots[i])) for i in range(len(roots)) if roots[i].imag > 0]
             if found and max(found)[1] < least[0]:
-                least = (float(max(found)[1]), float(V), load)
+                least = (float(max(found)[1]), float(V), load, factor)
     return least
 
 
 def check_decay(
     study: Study,
     design: Mapping[str, float],
-    points: Sequence[tuple[float, float]] = (),
+    points: Sequence[tuple[float, float, float]] = (),
     simulator: ExactSimulator | None = None,
 ) -> DecayCheck:
     """Decay by exact simulation, on twice as many speeds as the optimiser has looked at, and refined at the worst.
@@ -123,7 +131,7 @@ def check_decay(
         With a decay requirement.
     design : mapping
         Design variables by name [SI].
-    points : sequence of (speed, load)
+    points : sequence of (speed, load, damping factor)
         Where to look besides [m/s], [N].
     simulator : ExactSimulator or None
         Of the study, if it is at hand.
@@ -131,18 +139,21 @@ def check_decay(
     Returns
     -------
     DecayCheck
-        With `optimised` equal to `ratio`, for the caller to fill.
+        With `optimised` equal to `ratio`, for the caller to fill. Of an interval of dampings, both ends and the middle.
     """
     required, envelope = study.required.decay, study.envelope
     assert required is not None
-    run, made = (simulator or ExactSimulator(study)).with_design(design), 0
+    simulator, damper, made = simulator or ExactSimulator(study), study.damper, 0
+    runs: dict[float, ExactSimulator] = {}
 
     peaks = dict.fromkeys(PEAKS, 0.0)
 
-    def ratio(speed: float, load: float) -> float:
+    def ratio(speed: float, load: float, factor: float) -> float:
         nonlocal made
         made += 1
-        found, motion = _exact_ratio(run, speed, load)
+        if factor not in runs:
+            runs[factor] = simulator.with_design(damper.with_damping(design, factor))
+        found, motion = _exact_ratio(runs[factor], speed, load)
         for name in PEAKS:
             peaks[name] = max(peaks[name], float(np.abs(motion[name]).max()))
         return found
@@ -152,18 +163,22 @@ def check_decay(
         speeds = np.array(required.speeds)
     else:
         speeds = np.unique(np.clip(np.geomspace(low, high, 2 * study.solver.decay_speeds), low, high))
-    grid = [(float(V), load) for load in loads_of(study) for V in speeds] + list(points)
+    grid = [(float(V), load, factor) for factor in damper.dampings(1) for load in loads_of(study) for V in speeds]
+    grid += points
     found = {point: ratio(*point) for point in grid}
-    (speed, load), largest = max(found.items(), key=lambda item: item[1])
+    (speed, load, factor), largest = max(found.items(), key=lambda item: item[1])
     if required.speeds is None and low < high and largest < math.inf:
-        around = [V for V, _ in found if speed != V]
+        around = [V for V, _, _ in found if speed != V]
         bounds = max([low, *(V for V in around if speed > V)]), min([high, *(V for V in around if speed < V)])
         best = minimize_scalar(
-            lambda V: -ratio(float(V), load), bounds=bounds, method="bounded", options={"xatol": 1e-4 * high, "maxiter": 8}
+            lambda V: -ratio(float(V), load, factor),
+            bounds=bounds,
+            method="bounded",
+            options={"xatol": 1e-4 * high, "maxiter": 8},
         )
         speed, largest = max((speed, largest), (float(best.x), -float(best.fun)), key=lambda pair: pair[1])
     kept = largest <= required.ratio
-    return DecayCheck(kept, required.ratio, required.cycles, speed, load, largest, largest, made, peaks)
+    return DecayCheck(kept, required.ratio, required.cycles, speed, load, largest, largest, made, peaks, damping=factor)
 
 
 def _exact_ratio(simulator: ExactSimulator, speed: float, load: float) -> tuple[float, Trajectory]:

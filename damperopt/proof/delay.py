@@ -8,8 +8,9 @@ Claim: no root of D(lambda) lies right of Re = -mu, for all speeds V and loads F
 3. Count at one speed and load: N = n/2 - (change of the argument of D along w >= 0)/pi. The sum of the principal values over
    boxes without 0, each in a half plane, is exact; the far field gives the tail.
 
-Where a box cannot be freed of 0, roots are counted near it: N > 0 at one point is a proof that the margin is missed there. The
-verdict is else left open. Vehicle speed and load are constants in each motion (frozen). No part of the optimiser is used.
+Where the damping is uncertain, it takes the place of F_z, at one load after the other. Where a box cannot be freed of 0, roots
+are counted near it: N > 0 at one point is a proof that the margin is missed there. The verdict is else left open. Vehicle
+speed and load are constants in each motion (frozen). No part of the optimiser is used.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import flint
@@ -24,10 +26,11 @@ import numpy as np
 
 from ..errors import ConfigError
 from ..results import Certificate
-from ..stability.linear import LinearModel
+from ..stability.linear import LinearGear, LinearModel
 from ..study.study import Study
 from .boxes import Box, Strips
-from .quasi import Quasipolynomial
+from .damping import Interval
+from .quasi import OverDamping, Quasipolynomial
 from .rationals import decimal
 
 __all__ = ["certify_delay", "roots_to_the_right"]
@@ -85,7 +88,17 @@ def certify_delay(study: Study, design: Mapping[str, float], margin: float, mode
     Certificate
     """
     with flint.ctx.workprec(BITS):
-        return _Proof(study, design, margin, model).certificate()
+        interval = Interval.of(study)
+        if interval is None:
+            return _Proof(study, design, margin, model).certificate()
+        assert model.structure is not None
+        whole, boxes = Quasipolynomial(study, model.structure, design), 0
+        for load in study.envelope.loads:
+            found = _OverDamping(study, design, margin, model, whole.over_damping(decimal(load)), interval).certificate()
+            boxes += found.boxes
+            if not found.proved:
+                break
+        return replace(found, boxes=boxes)
 
 
 def roots_to_the_right(
@@ -111,10 +124,17 @@ def roots_to_the_right(
 class _Proof:
     """Strips of one design, and what has been looked at."""
 
-    def __init__(self, study: Study, design: Mapping[str, float], margin: float, model: LinearModel):
+    def __init__(
+        self,
+        study: Study,
+        design: Mapping[str, float],
+        margin: float,
+        model: LinearModel,
+        characteristic: Quasipolynomial | OverDamping | None = None,
+    ):
         assert model.structure is not None
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
-        self._strips = Strips(Quasipolynomial(study, model.structure, design), margin)
+        self._strips = Strips(characteristic or Quasipolynomial(study, model.structure, design), margin)
         self._boxes, self._polynomial = 0, model.structure.powers.load is not None
         speed, loads = study.envelope.speed, [decimal(F) for F in study.envelope.loads]
         self._speeds = decimal(speed.min), decimal(speed.max)
@@ -134,10 +154,13 @@ class _Proof:
                     return self._refuted(self._speeds[0], span[0])
             except _Open as left:
                 return self._left_open(left.box)
-        words = "no root can cross at any speed"
+        return self._outcome("proved", None, None, f"no root right of the line at one point, and {self._everywhere}")
+
+    @property
+    def _everywhere(self) -> str:
         if self._envelope.load_is_range:
-            words = "no root can cross anywhere in the rectangle of speeds and loads"
-        return self._outcome("proved", None, None, f"no root right of the line at one point, and {words}")
+            return "no root can cross anywhere in the rectangle of speeds and loads"
+        return "no root can cross at any speed"
 
     def _hints(self) -> Iterator[tuple[Q, Q]]:
         """Points where eigenvalues lie furthest beyond the margin, if any do."""
@@ -149,10 +172,15 @@ class _Proof:
             if found.max() > -self._margin:
                 yield decimal(float(speeds[found.argmax()])), decimal(load)
 
-    def _looked_at(self, speeds: np.ndarray, load: float) -> np.ndarray:
+    def _at(self, F: float) -> tuple[LinearGear, float]:
+        """Gear and load that a value of the second variable stands for."""
+        return self._gear, F
+
+    def _looked_at(self, speeds: np.ndarray, F: float) -> np.ndarray:
         """Abscissae [1/s], or nothing but -inf where eigenvalues are out of reach: hints alone."""
+        gear, load = self._at(F)
         try:
-            return self._gear.abscissa(speeds, load)
+            return gear.abscissa(speeds, load)
         except ConfigError:
             return np.full(len(speeds), -np.inf)
 
@@ -215,21 +243,70 @@ class _Proof:
             speed = decimal(float(inside[i]))
             if self._speeds[0] <= speed <= self._speeds[1] and self.count(speed, F):
                 return self._refuted(speed, F)
-        words = f"undecided near {_place(V, F)}, {float(w):.6g} rad/s: a root lies on the line, or too near to tell"
+        words = f"undecided near {self._place(V, F)}, {float(w):.6g} rad/s: a root lies on the line, or too near to tell"
         return self._outcome("undecided", None, float(w), words)
 
     def _refuted(self, V: Q, F: Q) -> Certificate:
-        words, frequency = f"missed at {_place(V, F)}: {self.count(V, F)} roots right of the line", None
+        words, frequency = f"missed at {self._place(V, F)}: {self.count(V, F)} roots right of the line", None
         if np.isfinite(self._looked_at(np.array([float(V)]), float(F))[0]):
-            root = self._gear.roots(float(V), float(F), 1)[0, 0]
+            gear, load = self._at(float(F))
+            root = gear.roots(float(V), load, 1)[0, 0]
             words, frequency = f"{words}, near {root.real:.6g} +- {abs(root.imag):.6g}i 1/s", float(abs(root.imag))
-        return self._outcome("refuted", (float(V), float(F)), frequency, words)
+        return self._outcome("refuted", (V, F), frequency, words)
 
-    def _outcome(self, verdict: Any, point: tuple[float, float] | None, frequency: float | None, reason: str) -> Certificate:
-        envelope = self._envelope
+    def _place(self, V: Q, F: Q) -> str:
+        return _place(V, F)
+
+    def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
+        envelope, place = self._envelope, None if point is None else (float(point[0]), float(point[1]))
         speeds = envelope.speed.min, envelope.speed.max
         proved, method = verdict == "proved", "balls, rectangle" if envelope.load_is_range else "balls"
-        return Certificate(proved, self._margin, speeds, envelope.loads, method, point, reason, self._boxes, verdict, frequency)
+        return Certificate(proved, self._margin, speeds, envelope.loads, method, place, reason, self._boxes, verdict, frequency)
+
+
+class _OverDamping(_Proof):
+    """The same at one load, over speeds and dampings."""
+
+    def __init__(
+        self,
+        study: Study,
+        design: Mapping[str, float],
+        margin: float,
+        model: LinearModel,
+        characteristic: OverDamping,
+        interval: Interval,
+    ):
+        super().__init__(study, design, margin, model, characteristic)
+        self._linear, self._load, self._interval = characteristic.linear, float(characteristic.load), interval
+        self._spans = [characteristic.linear.ends]
+        self._model_at = lambda factor: model.at(study.damper.with_damping(design, factor))
+
+    def _hints(self) -> Iterator[tuple[Q, Q]]:
+        slow, fast = (float(V) for V in self._speeds)
+        speeds = np.clip(np.geomspace(slow, fast, LOOKED_AT), slow, fast)
+        low, high = self._interval.factors
+        for factor in np.clip(np.geomspace(low, high, 5), low, high).tolist():
+            g = self._linear.linear_in(decimal(factor))
+            found = self._looked_at(speeds, float(g))
+            if found.max() > -self._margin:
+                yield decimal(float(speeds[found.argmax()])), g
+
+    @property
+    def _everywhere(self) -> str:
+        return "no root can cross anywhere in the rectangle of speeds and dampings"
+
+    def _at(self, F: float) -> tuple[LinearGear, float]:
+        return self._model_at(self._linear.factor(float(F))), self._load
+
+    def _place(self, V: Q, F: Q) -> str:
+        return f"{_place(V, Q(*self._load.as_integer_ratio()))}, {float(self._linear.factor(F)):.6g} times the damping"
+
+    def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
+        factor, place = None, None
+        if point is not None:
+            factor, place = float(self._linear.factor(point[1])), (point[0], Q(*self._load.as_integer_ratio()))
+        made = super()._outcome(verdict, place, frequency, reason)
+        return replace(made, method="balls, damping", damping=self._interval.factors, damping_factor=factor)
 
 
 def _place(V: Q, F: Q) -> str:

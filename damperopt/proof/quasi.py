@@ -20,18 +20,21 @@ from ..stability.response import Structure
 from ..study.study import Study
 from ..symbols import data_values
 from .balls import ball, enclosed
+from .damping import Interval, Linear, over_damping
 from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
 
-__all__ = ["Quasipolynomial", "Rows", "Slice", "Tyre"]
+__all__ = ["OverDamping", "Quasipolynomial", "Rows", "Slice", "Tyre"]
 
 Q: TypeAlias = flint.fmpq
+ONE, UNUSED = Q(1), flint.arb(1)
 Rows: TypeAlias = dict[tuple[int, int, int], flint.acb_poly]
 
 BITS = 128
 """Of coefficients, which are exact, and of the tyre's numbers as balls."""
 
-VARIABLES = ("s", "V", "F", "f", "m", "side", "swivel", "turn", "softness", "reach")
+VARIABLES = ("s", "V", "F", "f", "m", "side", "swivel", "turn", "softness", "reach", "g")
+"""Those of the tyre from `SIDE` on; last what uncertain damping makes linear, see `proof.damping`."""
 SIDE = VARIABLES.index("side")
 
 
@@ -119,11 +122,14 @@ class Quasipolynomial:
         self._data = [decimal(value) for value in data_values(study)]
         self.degree = len(structure.states) + structure.wheels
         self._kept: dict[Q | None, list[Any]] = {}
+        self._slope_of_damping: dict[Q | None, list[Any]] = {}
         load, data = ca.SX.sym("load"), ca.SX.sym("data", len(self._data))
         assert structure.footprint is not None
         row = structure.footprint(load, data)
         if not ca.is_equal(row, ca.repmat(row[0, :], structure.wheels, 1), 100) and structure.wheels > 1:
             raise CertificateError("the wheels of this gear have tyres of their own: no certificate with contact memory")
+        self._interval = Interval.of(study)
+        self.linear: Linear | None = None
         self._numbers = ca.Function("numbers", [load, data], [ca.densify(row[0, :])])
         self._slopes = ca.Function("slopes", [load, data], [ca.densify(ca.jacobian(row[0, :], load))])
 
@@ -145,6 +151,32 @@ class Quasipolynomial:
             found, spread = self._collected(terms, middle, at), self._collected(terms, over, across)
             return Slice((low, high), found, spread, slope, at, across, change)
 
+    def over_damping(self, load: Q) -> OverDamping:
+        """D at one load [N] as a function of speed and damping."""
+        self._terms(load, load)
+        assert self.linear is not None
+        return OverDamping(self, load, self.linear)
+
+    def slice_of_damping(self, load: Q, low: Q, high: Q) -> Slice:
+        """D at one load [N] between two values of what uncertain damping is linear in; the interval stands as `loads`."""
+        with flint.ctx.workprec(BITS):
+            F, over, middle = flint.arb(load), ball(flint.arb(low), flint.arb(high)), flint.arb((low + high) / 2)
+            terms, _ = self._terms(load, load)
+            tyre = Tyre.of(enclosed(self._numbers, [[F], [flint.arb(value) for value in self._data]]))
+            at = self._collected(terms, F, tyre, middle)
+            if low == high:
+                return Slice((low, high), at, at, {}, tyre, tyre, tyre)
+            still = Tyre.of([flint.arb(0)] * 12)
+            slope = self._collected(self._by_damping(load), F, tyre, over)
+            return Slice((low, high), at, self._collected(terms, F, tyre, over), slope, tyre, tyre, still)
+
+    def _by_damping(self, load: Q) -> list[Any]:
+        """Terms of the derivative of D to g."""
+        key = None if self._structure.powers.load is not None else load
+        if key not in self._slope_of_damping:
+            self._slope_of_damping[key] = list(_with_balls(self._kept[key][0].derivative("g")))
+        return self._slope_of_damping[key]
+
     def _terms(self, low: Q, high: Q) -> tuple[list[Any], list[list[Any]]]:
         """Terms of D, and of its derivatives to F and to the numbers of the tyre that are not in f and m."""
         key = None if self._structure.powers.load is not None else low
@@ -156,37 +188,33 @@ class Quasipolynomial:
         if len(self._kept[key]) == 1:
             self._kept[key] += [list(_with_balls(polynomial)), []]
         if low != high and not self._kept[key][2]:
-            variables = ("F", *VARIABLES[SIDE:])
+            variables = ("F", *VARIABLES[SIDE:-1])
             self._kept[key][2] = [list(_with_balls(polynomial.derivative(name))) for name in variables]
         return self._kept[key][1], self._kept[key][2]
 
     def _expanded(self, loads: list[Q]) -> flint.fmpq_mpoly:
         """D over the rationals."""
-        structure, speed = self._structure, self._study.envelope.speed
-        values = [rational(self._design[name]) for name in structure.design_names]
-
-        def system(V: Q, F: Q) -> flint.fmpq_mat:
-            return flint.fmpq_mat(evaluate(structure.system, [values, [V], [F], self._data]))
-
-        parts = parts_in_powers(system, structure.powers, (decimal(speed.min), decimal(speed.max)), loads)
+        structure = self._structure
+        parts = self._parts(loads)
         ring = flint.fmpq_mpoly_ctx.get(VARIABLES, "lex")
-        s, V, F, f, m, side, swivel, turn, softness, reach = ring.gens()
+        s, V, F, f, m, side, swivel, turn, softness, reach, g = ring.gens()
         zero, n, w = ring.constant(0), len(structure.states), structure.wheels
         size = n + 2 * w
         lift = [
-            max([0, *(-i for (i, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)
+            max([0, *(-i for (i, _, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)
         ]
         self.lift = sum(lift)
 
         def entry(r: int, c: int) -> Any:
             """Of the system, times the power of V that clears its row."""
-            return sum((V ** (i + lift[r]) * F**j * part[r, c] for (i, j), part in parts.items() if part[r, c] != 0), zero)
+            terms = [(key, part[r, c]) for key, part in parts.items() if part[r, c] != 0]
+            return sum((V ** (i + lift[r]) * F**j * g**k * value for (i, j, k), value in terms), zero)
 
         rows = [[(V ** lift[r] * s if r == c else zero) - entry(r, c) for c in range(n)] + [zero] * w for r in range(n)]
         for k in range(w):
-            eta, theta = ([parts[0, 0][n + 2 * k + q, c] for c in range(n)] for q in (0, 1))
+            eta, theta = ([parts[0, 0, 0][n + 2 * k + q, c] for c in range(n)] for q in (0, 1))
             if any(
-                part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0) for q in (0, 1) for c in range(n)
+                part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0, 0) for q in (0, 1) for c in range(n)
             ):
                 raise CertificateError("position or swivel of a wheel hangs on speed or load in the linear model")
             for r in range(n):
@@ -199,9 +227,40 @@ class Quasipolynomial:
             rows.append([*path, *((s + V * softness if k == q else zero) for q in range(w))])
         return _determinant(rows, ring)
 
-    def _collected(self, terms: Sequence[Any], load: flint.arb, tyre: Tyre) -> Rows:
-        """By powers of f, m and V polynomials in lambda, with load and tyre put in."""
-        values = (load, *tyre.others)
+    def _parts(self, loads: list[Q]) -> dict[tuple[int, int, int], flint.fmpq_mat]:
+        """Matrices of V^i F^j g^k of the system."""
+        structure, study = self._structure, self._study
+        exact = {name: rational(self._design[name]) for name in structure.design_names}
+        speeds = decimal(study.envelope.speed.min), decimal(study.envelope.speed.max)
+
+        def system(V: Q, F: Q, factor: Q = ONE) -> flint.fmpq_mat:
+            values = list(study.damper.with_damping(exact, factor).values())
+            return flint.fmpq_mat(evaluate(structure.system, [values, [V], [F], self._data]))
+
+        whole = parts_in_powers(system, structure.powers, speeds, loads)
+        if self._interval is None:
+            return {(i, j, 0): part for (i, j), part in whole.items()}
+        found: dict[tuple[int, int, int], flint.fmpq_mat] = {}
+        self.linear, at_load = over_damping(
+            lambda V, factor: system(V, loads[0], factor), structure.powers.speed, speeds, self._interval
+        )
+        # what the damping is in is the same at every load: the change with it is taken off at its own value, and shown again
+        for (i, k), part in at_load.items():
+            found[i, 0, k] = part if k else part - part
+        for (i, j), part in whole.items():
+            found[i, j, 0] = part - found[i, 0, 1] if j == 0 else part
+        V, F, factor = speeds[1], loads[-1], decimal(self._interval.factors[0])
+        value = self.linear.linear_in(factor)
+        rebuilt = sum((part * (V**i * F**j * value**k) for (i, j, k), part in found.items()), whole[0, 0] - whole[0, 0])
+        if rebuilt != system(V, F, factor):
+            raise CertificateError(
+                "damping and load act together in this structure: no certificate over an interval of dampings"
+            )
+        return found
+
+    def _collected(self, terms: Sequence[Any], load: flint.arb, tyre: Tyre, g: flint.arb = UNUSED) -> Rows:
+        """By powers of f, m and V polynomials in lambda, with load, tyre and damping put in."""
+        values = (load, *tyre.others, g)
         found: dict[tuple[int, int, int], dict[int, flint.arb]] = {}
         powers: dict[tuple[int, int], flint.arb] = {}
         for exponents, coefficient in terms:
@@ -215,6 +274,24 @@ class Quasipolynomial:
             row[i] = row[i] + coefficient if i in row else coefficient
         zero = flint.arb(0)
         return {key: flint.acb_poly([row.get(i, zero) for i in range(max(row) + 1)]) for key, row in found.items()}
+
+
+@dataclass(frozen=True)
+class OverDamping:
+    """D at one load, its second variable what uncertain damping is linear in."""
+
+    whole: Quasipolynomial
+    load: Q
+    linear: Linear
+
+    @property
+    def degree(self) -> int:
+        """n"""
+        return self.whole.degree
+
+    def slice(self, low: Q, high: Q) -> Slice:
+        """D between two values of the second variable."""
+        return self.whole.slice_of_damping(self.load, low, high)
 
 
 def _determinant(rows: list[list[Any]], ring: Any) -> Any:

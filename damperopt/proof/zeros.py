@@ -6,6 +6,7 @@ In one variable by Sturm's theorem; in two over a rectangle by Bernstein coeffic
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from fractions import Fraction
 from math import comb, lcm
 from typing import Any, TypeAlias
@@ -93,7 +94,7 @@ def _enclosed(chain: list[flint.fmpz_poly], low: Q, high: Q) -> list[float]:
 
 
 def zero_in_rectangle(
-    condition: Any, speeds: tuple[float, float], loads: tuple[float, ...]
+    condition: Any, speeds: tuple[float, float], loads: Sequence[float | Fraction]
 ) -> tuple[tuple[float, float] | None, int]:
     """A point where a polynomial in V and F vanishes, changes sign or cannot be told from zero; None is a proof of none.
 
@@ -104,8 +105,8 @@ def zero_in_rectangle(
     ----------
     condition : fmpq_mpoly
         Polynomial in (u, V, F) without u.
-    speeds, loads : tuple of float
-        Ends of the rectangle, the decimals that they are written as [m/s], [N].
+    speeds, loads : sequence of float
+        Ends of the rectangle, the decimals that they are written as [m/s], [N]; a fraction is itself, of whatever F stands for.
 
     Returns
     -------
@@ -140,14 +141,14 @@ def _variation(box: np.ndarray, axis: int) -> int:
     return max(map(abs, np.diff(box, axis=axis).ravel().tolist()), default=0)
 
 
-def _inside(ends: tuple[float, ...], fraction: Fraction) -> float:
+def _inside(ends: Sequence[float | Fraction], fraction: Fraction) -> float:
     low, high = _fraction(ends[0]), _fraction(ends[-1])
     return float(low + (high - low) * fraction)
 
 
-def _fraction(value: float) -> Fraction:
+def _fraction(value: float | Fraction) -> Fraction:
     """A number of the envelope, as the decimal that was written."""
-    return Fraction(repr(float(value)))
+    return value if isinstance(value, Fraction) else Fraction(repr(float(value)))
 
 
 def _halved(interval: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
@@ -155,7 +156,7 @@ def _halved(interval: tuple[Fraction, Fraction]) -> tuple[tuple[Fraction, Fracti
     return (interval[0], middle), (middle, interval[1])
 
 
-def _bernstein(condition: Any, speeds: tuple[float, float], loads: tuple[float, ...]) -> np.ndarray:
+def _bernstein(condition: Any, speeds: tuple[float, float], loads: Sequence[float | Fraction]) -> np.ndarray:
     """Integer Bernstein coefficients on the rectangle, (degree in V + 1, degree in F + 1), up to a positive factor."""
     _, m, n = condition.degrees()
     power = np.full((m + 1, n + 1), Fraction(0), dtype=object)

@@ -70,6 +70,10 @@ Fraction = Annotated[float, Quantity("1", at_least=0, example="0.2")]
 class Record(BaseModel):
     """Base of all records: frozen, no unknown keys."""
 
+    def constants(self) -> tuple[str, ...]:
+        """Fields that stay numbers where the others become symbols: no derivative is taken of them."""
+        return ()
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 

@@ -53,11 +53,7 @@ def limit_event(
     yaw = torque / k_psi  # of the linkage, behind the links
     yaw_rate = yaw * sqrt(k_psi / study.gear.yaw_inertia)
     spring_force = factors[4] * torque / linkage.spring_lever
-    damping = study.damper.damping({**design, **linkage.as_printed})
-    if elastic and damping is not None:
-        force = study.damper.peak_force(design, _released(torque, study, linkage, damping) / damping)
-    else:
-        force = study.damper.peak_force(design, linkage.damper_lever * yaw_rate)
+    force = _damper_force(study, linkage, design, torque, yaw_rate)
     twist = torque / (linkage.links * linkage.reach**2) if elastic and linkage.links is not None else 0
     return LimitEvent(
         torque=factors[0] * torque,
@@ -75,6 +71,18 @@ def limit_event(
         flight=flight_shares(study, linkage, torque, load) if elastic else None,
         design=design,
     )
+
+
+def _damper_force(study: Any, linkage: Linkage, design: Mapping[str, Expr], torque: Expr, yaw_rate: Expr) -> Expr:
+    """Largest force in the damper [N]; where its damping is uncertain that of the largest, with cold oil."""
+    damper, (_, coldest) = study.damper, study.damper.damping_factors()
+    if coldest != 1:
+        design = damper.with_damping(design, coldest)
+    printed = damper.with_damping(linkage.as_printed, coldest)
+    damping = damper.damping({**design, **printed})
+    if damper.has_sized_parts() and damping is not None:
+        return damper.peak_force(design, _released(torque, study, linkage, damping) / damping)
+    return damper.peak_force(design, linkage.damper_lever * yaw_rate)
 
 
 def _released(torque: Expr, study: Any, linkage: Linkage, damping: Expr) -> Expr:

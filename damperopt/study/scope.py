@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..quantities.temperature import ZERO_CELSIUS
 from .study import Study
 
 __all__ = ["covers", "leaves_out"]
@@ -27,6 +28,7 @@ def covers(study: Study) -> list[str]:
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
+    found += _uncertain(study)
     if words := study.tyre.origin():
         found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
@@ -40,6 +42,25 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _uncertain(study: Study) -> list[str]:
+    """What of the damping is covered, where it is uncertain."""
+    damper = study.damper
+    low, high = damper.damping_factors()
+    if (low, high) == (1.0, 1.0):
+        return []
+    words = f"It covers every damping from {low:.6g} to {high:.6g} times that of the design"
+    if damper.damping_range is None:
+        span = damper.oil.span
+        words += (
+            f", which oil from {span.min - ZERO_CELSIUS:.4g} to {span.max - ZERO_CELSIUS:.4g} degC makes of it (Walther; "
+            "laminar fraction and oil typical unless given); the compliance of the oil is that of the study throughout"
+        )
+    return [
+        f"{words}. Decay is simulated at both ends and the middle of the interval, the damping ratio sampled; the damper is as "
+        "strong as the largest damping asks."
+    ]
 
 
 def _chain(damper: Any) -> str:

@@ -78,6 +78,7 @@ class Study(Record):
             if words := self.beyond_tyre(load):
                 allowed = "loads that the tyre has data for"
                 raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
+        self._certain_enough()
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
@@ -93,6 +94,16 @@ class Study(Record):
                     f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def _certain_enough(self) -> None:
+        """What uncertain damping does not go with."""
+        if self.damper.damping_factors() == (1.0, 1.0):
+            return
+        key = "damper.damping_range" if self.damper.damping_range is not None else "damper.oil.temperature"
+        if self.envelope.load_is_range:
+            raise refuse("envelope.vertical_load", f"a range of loads beside {key}", "one load or a list of loads")
+        if self.requirements is not None and self.requirements.limit_event == "simulated":
+            raise refuse("requirements.limit_event", f"simulated, beside {key}", "torque: its force is that of the cold damper")
 
     def wheel_loads(self, load: float) -> tuple[float, ...]:
         """Loads on the wheels [N] at a load on the gear [N]."""

@@ -14,9 +14,9 @@ from ..errors import ConfigError
 from ..optimum.stock import of_chosen_sizes
 from ..provenance import program
 from ..stability.critical import critical_speeds
-from ..stability.linear import linear_gear
+from ..stability.linear import LinearModel, linear_gear
 from ..stability.modes import track_modes
-from ..stability.worst import worst_points
+from ..stability.over_damping import worst_over_damping
 from ..study.study import Study
 
 __all__ = ["run_point"]
@@ -86,8 +86,8 @@ def _started(study: Study, start: Mapping[str, float] | None) -> Study:
 
 
 def _analysed(study: Study, speeds: int, start: Mapping[str, float] | None) -> dict[str, Any]:
-    gear = linear_gear(study)
-    worst = worst_points(gear, study.envelope)[0]
+    model = LinearModel(study)
+    gear, worst = model.at(study.start), worst_over_damping(model, study, study.start)[0]
     critical = [c.speed for load in study.envelope.loads for c in critical_speeds(gear, load, *_range(study))]
     numbers = {"abscissa": worst.abscissa, "worst_speed": worst.speed, "worst_load": worst.load}
     numbers |= {"lowest_critical_speed": min(critical, default=np.nan), "highest_critical_speed": max(critical, default=np.nan)}

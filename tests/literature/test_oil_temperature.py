@@ -10,7 +10,7 @@ from components_of import damper_of
 
 from damperopt import load, optimise
 from damperopt.dampers.base import Context
-from damperopt.dampers.oil import Oil
+from damperopt.dampers.oil import Oil, orifice_area
 from damperopt.expressions.corners import Linear
 from damperopt.stability.linear import linear_gear
 
@@ -63,3 +63,29 @@ def test_a_hot_gear_has_less_damping_and_needs_more_of_it(configs):
 def test_oil_that_thickens_with_heat_is_refused():
     with pytest.raises(ValueError, match="thinner when it is hot"):
         Oil(temperature=293.15, viscosity_at_40_degrees=5e-6, viscosity_at_100_degrees=6e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "kelvin"), [("20 degC", 293.15), ("-65 degF", 219.2611111), ("-54 °C", 219.15), ("300 K", 300.0), (300, 300.0)]
+)
+def test_temperatures_with_units(text, kelvin):
+    assert Oil(temperature=text).temperature == pytest.approx(kelvin, rel=1e-9)
+
+
+@pytest.mark.parametrize("text", ["20", "20 C", "20 degC degC", 20, "-300 degC", "20,5 degC"])
+def test_what_is_no_temperature_is_refused(text):
+    with pytest.raises(ValueError, match="such as '20 degC'"):
+        Oil(temperature=text)
+
+
+def test_a_range_refers_to_a_temperature_within():
+    span = Oil(temperature={"min": "-54 degC", "max": "70 degC"})
+    assert span.factor() == 1.0
+    assert span.factor(span.span.min) == pytest.approx(0.2 * 522.8 / 21.71 + 0.8 * (1 + 8e-4 * 74), rel=1e-3)
+    with pytest.raises(ValueError, match="within the range"):
+        Oil(temperature={"min": "30 degC", "max": "70 degC"})
+
+
+def test_orifice_for_a_damping():
+    """The orifice of 6 mm^2 whose simulated first harmonic at 2 mm and 70 rad/s is 725.641 N s/m."""
+    assert orifice_area(725.641, 6e-4, 2e-3 * 70.0, 860.0) == pytest.approx(6e-6, rel=1e-3)

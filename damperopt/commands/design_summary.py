@@ -69,7 +69,8 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
         console.print(
             f"Decay: {verdict}: {decay.ratio:.5f} of the first amplitude after {decay.cycles} cycles at {decay.speed:.2f} m/s, "
-            f"{decay.load / 1e3:g} kN{times(decay.damping, certificate)}, the worst of {decay.simulations} exact simulations; required {decay.limit:.5f}"
+            f"{decay.load / 1e3:g} kN{times(decay.damping, certificate)}, the worst of {decay.simulations} exact simulations; "
+            f"required {decay.limit:.5f}"
             f"; optimised with {decay.engine}",
             soft_wrap=True,
         )

@@ -493,6 +493,13 @@ def with_sizes(expression: Any, sizes: Sequence[Any]) -> float:
     return float(ca.substitute(expression, symbols, starts))
 
 
+def once(cases: Sequence[Any]) -> list[Any]:
+    """Every case; each kind once in the normal set, its other variants in `make verify`: what a whole run takes, takes long."""
+    usual = {case.id for case in least(cases)}
+    others = pytest.mark.verify
+    return [case if case.id in usual else pytest.param(*case.values, id=case.id, marks=(*case.marks, others)) for case in cases]
+
+
 def least(cases: Sequence[Any]) -> list[Any]:
     """One case of each kind, by the first word of its name: the last that is not full."""
     return list({case.id.removeprefix("contact ").split()[0]: case for case in cases if "full" not in case.id}.values())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import standard
 from scipy.integrate import solve_ivp
-from standard import least
+from standard import least, once
 from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.dampers.base import Context
@@ -167,10 +167,12 @@ def test_says_what_it_leaves_out(study):
     assert all(isinstance(words, str) and words for words in study.damper.leaves_out())
 
 
+@pytest.mark.parametrize("study", once(BLOCKS), indirect=True)
 def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+@pytest.mark.parametrize("study", once(BLOCKS), indirect=True)
 def test_is_optimised(study, tmp_path):
     is_optimised(study, tmp_path)
 

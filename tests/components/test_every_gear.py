@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import standard
-from standard import least
+from standard import least, once
 from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.expressions.corners import Smooth
@@ -78,10 +78,12 @@ def test_says_what_it_leaves_out(study):
     assert all(isinstance(words, str) and words for words in study.gear.leaves_out())
 
 
+@pytest.mark.parametrize("study", once(BLOCKS), indirect=True)
 def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
+@pytest.mark.parametrize("study", once(BLOCKS), indirect=True)
 def test_is_optimised(study, tmp_path):
     is_optimised(study, tmp_path)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import standard
 from scipy.optimize import root
-from standard import least
+from standard import least, once
 from whole import goes_through_the_commands, is_optimised, is_reported
 
 from damperopt.figures.linkage import linkage
@@ -256,12 +256,12 @@ def test_moved_members_have_the_lengths_of_the_loop(study, psi):
         assert moved.stroke == pytest.approx(eps, abs=CLOSES)
 
 
-@pytest.mark.parametrize("study", designs(), indirect=True)
+@pytest.mark.parametrize("study", once(designs()), indirect=True)
 def test_goes_through_the_commands(study, tmp_path):
     goes_through_the_commands(study, tmp_path)
 
 
-@pytest.mark.parametrize("study", designs(), indirect=True)
+@pytest.mark.parametrize("study", once(designs()), indirect=True)
 def test_is_optimised(study, tmp_path):
     is_optimised(study, tmp_path)
 

@@ -34,7 +34,15 @@ CHOICES: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {  # name: the layo
     "hinge width 0.35 m": (LAYOUTS, {"damper__links__hinge_width": 0.35}),
     "arm i_section": (ARMS, {"mass__arm_section": I_SECTION}),
     "lower_lug_height 0.25 m": (LAYOUTS, {"mass__lower_lug_height": 0.25}),
+    "links and support cantilever": (
+        LAYOUTS,
+        {"damper__links__form": "cantilever", "damper__support__form": "cantilever"},
+    ),
+    "contact memory": (LAYOUTS, {"tyre__contact": "memory", "solver__starts": 1}),
+    "planar and rigid, as the thesis": (LAYOUTS, {"damper__geometry": "planar", "damper__compliance": "rigid"}),
 }
+EVEN = 2.0
+"""Difference of two masses that is none, in per cent: contact memory moves single masses by as much."""
 STATEMENTS = {
     "arreaza lighter than utas": ("arreaza", "utas"),
     "arreaza lighter than boeing": ("arreaza", "boeing"),
@@ -56,14 +64,17 @@ def with_memory(study: damperopt.Study, design: Mapping[str, float]) -> float:
 
 
 def cell(layout: str, changes: Mapping[str, Any]) -> tuple[float | None, str]:
-    """Mass [kg], and what the table shows of one optimum."""
-    study = study_of(layout, changes)
+    """Mass [kg], and what the table shows of one optimum; where the leading point fails the search is made with memory."""
+    study, mark = study_of(layout, changes), ""
     result = damperopt.optimise(study)
+    if result.status == "failed":
+        study, mark = study.replace(tyre__contact="memory"), " m"
+        result = damperopt.optimise(study)
     if result.status != "solved" or result.mass is None:
         return None, result.status
     worst = with_memory(study, result.design)
     kept = worst <= -study.required.stability_margin
-    return result.mass.total, f"{result.mass.total:.2f}" + ("" if kept else f" ({worst:+.2f})")
+    return result.mass.total, f"{result.mass.total:.2f}{mark}" + ("" if kept else f" ({worst:+.2f})")
 
 
 def masses_of(names: list[str]) -> Iterator[tuple[str, Masses]]:
@@ -93,7 +104,8 @@ def verdict(lighter: str, heavier: str, masses: Masses) -> str:
     if lighter not in masses or heavier not in masses:
         return "no answer"
     share = 100 * (masses[lighter] / masses[heavier] - 1)
-    return f"{'holds' if share < 0 else 'fails'} ({share:+.0f} %)"
+    word = "even" if abs(share) < EVEN else "holds" if share < 0 else "fails"
+    return f"{word} ({share:+.1f} %)"
 
 
 def main() -> None:
@@ -101,7 +113,8 @@ def main() -> None:
     parser.add_argument("--only", default="", help="choices whose name contains this, beside the base")
     only = parser.parse_args().only
     names = [name for name in CHOICES if name == "base" or only in name]
-    print("Masses [kg]; in brackets the largest real part with contact memory [1/s] where it misses the margin.\n")
+    print("Masses [kg]; in brackets the largest real part with contact memory [1/s] where it misses the margin;")
+    print("m: the solver stops with the leading point, found with memory.\n")
     print(f"| choice | {' | '.join(LAYOUTS)} | order | CPU [s] |\n|---|{'---|' * len(LAYOUTS)}---|---|")
     rows = dict(masses_of(names))
     print(f"\n| choice | {' | '.join(STATEMENTS)} |\n|---|{'---|' * len(STATEMENTS)}")

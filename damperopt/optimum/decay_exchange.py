@@ -10,7 +10,7 @@ import numpy as np
 
 from ..motion.decay import DecayPoint
 from ..stability.worst import worst_points
-from .cuts import Cut, about
+from .cuts import Cut, about, cut_before, held_with
 from .damping_exchange import DampingHold, DampingPoint
 from .exchange import EnvelopeSolution, allowed_abscissa, missed_points
 from .program import CUTS, Program
@@ -44,9 +44,6 @@ LEARNING_STEP, PEAK_LEARNING_STEP = 1e-5, 3e-3
 REFINED = 1e-2
 """Step of the scaled variables below which the worst speeds are looked for in earnest."""
 
-SAME_SPEED = 0.05
-"""Two worst speeds closer than this part of the larger are one that has moved."""
-
 NEAR = 0.7
 """Peaks of the decay ratio above this part of the largest are held from the start."""
 
@@ -71,9 +68,8 @@ class DecayHold:
     def worst(self, design: Mapping[str, float], refined: bool) -> list[DecayPoint]:
         """Peaks of the decay ratio; the high ones are held from now on."""
         peaks = self._analysis.worst(design, refined)
-        for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
-            self._held = [held for held in self._held if not _moved((peak.speed, peak.load), held)]
-            self._held = [*self._held, (peak.speed, peak.load)][len(self._always) - CUTS :]
+        high = [(p.speed, p.load) for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]
+        self._held = held_with(self._held, high)[len(self._always) - CUTS :]
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
@@ -81,7 +77,7 @@ class DecayHold:
         points = [self._analysis.at(design, *place, gradient=True) for place in (*self._always, *self._held)]
         numbers = [(p.speed, p.load, p.ratio, p.gradient) for p in points]
         # a speed that has moved keeps what was learnt
-        before = [next((c for c in self._last if _moved(n[:2], (c.speed, c.load))), None) for n in numbers]
+        before = [cut_before(n[:2], self._last) for n in numbers]
         self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
 
@@ -95,10 +91,6 @@ class DecayHold:
         before: Sequence[Cut | None] = self._last_peaks or [None] * len(points)
         self._last_peaks = about(self._problem, design, numbers, before, PEAK_LEARNING_STEP)
         return self._last_peaks
-
-
-def _moved(point: tuple[float, float], held: tuple[float, float]) -> bool:
-    return point[1] == held[1] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
 
 
 def solve_with_decay(
@@ -200,7 +192,7 @@ def _model_error(before: Sequence[Cut], after: Sequence[Cut]) -> float:
     """Largest difference from what the models of the last round say; that of a bad one without any."""
     if not after:
         return 0.0
-    pairs = ((c, next((b for b in before if _moved((c.speed, c.load), (b.speed, b.load))), None)) for c in after)
+    pairs = ((c, cut_before((c.speed, c.load), before)) for c in after)
     errors = [abs(cut.value - model.at(cut.centre)) for cut, model in pairs if model is not None]
     return max(errors, default=1.0)
 

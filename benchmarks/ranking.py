@@ -2,9 +2,9 @@
 
     python benchmarks/ranking.py [--only 'hinge width']
 
-The study is main_gear.yaml: linkage in space, every sized part elastic, loads of 14 CFR 25, 0.1 1/s and the damping ratio of the
-yaw mode. Not its own: no decay in time, 2 starts, and the contact line `leading_point`, all for speed; each answer is held
-against contact memory afterwards. One choice at a time is changed from the base.
+The study is main_gear.yaml: linkage in space, every sized part elastic, loads of 14 CFR 25, 0.1 1/s and the damping ratio of
+the yaw mode. Not its own: no decay in time, 2 starts, and the contact line `leading_point`, all for speed; each answer is
+held against contact memory afterwards. One choice at a time is changed from the base.
 """
 
 from __future__ import annotations

@@ -11,10 +11,13 @@ import numpy as np
 
 from .problem import DesignProblem
 
-__all__ = ["CONSTANT", "Cut", "about", "monomials"]
+__all__ = ["CONSTANT", "Cut", "about", "cut_before", "held_with", "monomials", "place_before"]
 
 ACROSS = 1e-8
 """Cosine between a step and what it shows of a gradient below which it shows no curvature along itself."""
+
+SAME_SPEED = 0.05
+"""Two worst speeds closer than this part of the larger may be one that has moved."""
 
 CONSTANT = 0
 """Which of `monomials` is 1: its coefficient is the value at x = 0."""
@@ -113,3 +116,29 @@ def _curvature(last: Cut | None, x: np.ndarray, gradient: np.ndarray, learning_s
     if np.linalg.norm(step) < learning_step or abs(along) <= ACROSS * np.linalg.norm(surprise) * np.linalg.norm(step):
         return last.curvature
     return last.curvature + np.outer(surprise, surprise) / along
+
+
+def place_before(place: tuple[float, ...], earlier: Sequence[tuple[float, ...]]) -> int | None:
+    """Index of the place that has moved here: the nearest speed at this load and damping, if it is near enough."""
+    near = [
+        (abs(place[0] - speed), i)
+        for i, (speed, *rest) in enumerate(earlier)
+        if rest == list(place[1:]) and abs(place[0] - speed) <= SAME_SPEED * max(place[0], speed)
+    ]
+    return min(near)[1] if near else None
+
+
+def held_with(held: Sequence[tuple[float, ...]], found: Sequence[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    """Places that are held once others were found: each takes the place of the one that has moved there, of no other."""
+    kept = list(held)
+    for place in found:
+        i = place_before(place, kept)
+        if i is not None:
+            del kept[i]
+    return [*kept, *found]
+
+
+def cut_before(place: tuple[float, ...], cuts: Sequence[Cut]) -> Cut | None:
+    """What was learnt where this place has come from."""
+    i = place_before(place, [cut.place for cut in cuts])
+    return None if i is None else cuts[i]

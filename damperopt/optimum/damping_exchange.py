@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..stability.yaw_mode import yaw_mode, yaw_modes
-from .cuts import Cut, about
+from .cuts import Cut, about, cut_before, held_with
 from .problem import DesignProblem
 
 __all__ = ["DampingHold", "DampingPoint", "least_damping"]
@@ -24,9 +24,6 @@ SPEEDS = 40
 
 NEAR = 1.3
 """Dips of the damping ratio below this multiple of the least are held from the start."""
-
-SAME_SPEED = 0.05
-"""Two dips closer than this part of the larger speed are one that has moved."""
 
 LEARNING_STEP = 1e-5
 """Step below which the difference of two gradients shows their rounding and no curvature."""
@@ -110,7 +107,7 @@ class DampingHold:
         A = model.state_matrix(design, speed, load, ca.DM(problem.data))
         self._slopes = ca.Function("slopes", [design, speed, load], [A, ca.densify(ca.jacobian(ca.vec(A), design))])
         self._angle, self._rate = (model.state_names.index(name) for name in ("yaw_angle", "yaw_rate"))
-        self._held, self._last = list[tuple[float, float, float]](), list[Cut]()
+        self._held, self._last = list[tuple[float, ...]](), list[Cut]()
 
     @property
     def required(self) -> float:
@@ -122,9 +119,8 @@ class DampingHold:
     def worst(self, design: Mapping[str, float]) -> list[DampingPoint]:
         """Dips of the damping ratio; the low ones are held from now on."""
         dips = least_damping(self._problem, design)
-        for dip in [p for p in dips if p.ratio <= NEAR * max(dips[0].ratio, self.required)][: self._most]:
-            self._held = [held for held in self._held if not _same(dip.place, held)]
-            self._held = [*self._held, dip.place][-self._most :]
+        low = [p.place for p in dips if p.ratio <= NEAR * max(dips[0].ratio, self.required)][: self._most]
+        self._held = held_with(self._held, low)[-self._most :]
         return dips
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
@@ -144,10 +140,6 @@ class DampingHold:
             ratio = -s.real / abs(s)
             slope = -ds.real / abs(s) + s.real * (s.conjugate() * ds).real / abs(s) ** 3
             numbers.append((place, math.exp(1 - ratio / self.required), -slope / self.required))
-        before = [next((c for c in self._last if _same(n[0], c.place)), None) for n in numbers]
+        before = [cut_before(n[0], self._last) for n in numbers]
         self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
-
-
-def _same(point: tuple[float, ...], held: tuple[float, ...]) -> bool:
-    return point[1:] == held[1:] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..motion.decay import DecayPoint
-from .cuts import Cut, about
+from .cuts import Cut, about, cut_before, held_with
 from .damping_exchange import DampingHold, DampingPoint
 from .exchange import EnvelopeSolution, allowed_abscissa, missed_points
 from .program import CUTS, Program
@@ -44,9 +44,6 @@ LEARNING_STEP, PEAK_LEARNING_STEP = 1e-5, 3e-3
 REFINED = 1e-2
 """Step of the scaled variables below which the worst speeds are looked for in earnest."""
 
-SAME_SPEED = 0.05
-"""Two worst speeds closer than this part of the larger are one that has moved."""
-
 NEAR = 0.7
 """Peaks of the decay ratio above this part of the largest are held from the start."""
 
@@ -77,9 +74,8 @@ class DecayHold:
             for point in self._analysis.worst(damper.with_damping(design, factor), refined)
         ]
         peaks = sorted(found, key=lambda point: -point.ratio)
-        for peak in [p for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]:
-            self._held = [held for held in self._held if not _moved(peak.place, held)]
-            self._held = [*self._held, peak.place][len(self._always) - CUTS :]
+        high = [p.place for p in peaks if p.ratio >= NEAR * peaks[0].ratio][:CUTS]
+        self._held = held_with(self._held, high)[len(self._always) - CUTS :]
         return peaks
 
     def cuts(self, design: Mapping[str, float]) -> list[Cut]:
@@ -89,7 +85,7 @@ class DecayHold:
             p = self._analysis.at(damper.with_damping(design, factor), speed, load, gradient=True)
             numbers.append(((speed, load, factor), p.ratio, p.gradient))
         # a speed that has moved keeps what was learnt
-        before = [next((c for c in self._last if _moved(n[0], c.place)), None) for n in numbers]
+        before = [cut_before(n[0], self._last) for n in numbers]
         self._last = about(self._problem, design, numbers, before, LEARNING_STEP)
         return self._last
 
@@ -103,10 +99,6 @@ class DecayHold:
         before: Sequence[Cut | None] = self._last_peaks or [None] * len(points)
         self._last_peaks = about(self._problem, design, numbers, before, PEAK_LEARNING_STEP)
         return self._last_peaks
-
-
-def _moved(point: tuple[float, ...], held: tuple[float, ...]) -> bool:
-    return point[1:] == held[1:] and abs(point[0] - held[0]) <= SAME_SPEED * max(point[0], held[0])
 
 
 def solve_with_decay(
@@ -208,7 +200,7 @@ def _model_error(before: Sequence[Cut], after: Sequence[Cut]) -> float:
     """Largest difference from what the models of the last round say; that of a bad one without any."""
     if not after:
         return 0.0
-    pairs = ((c, next((b for b in before if _moved(c.place, b.place)), None)) for c in after)
+    pairs = ((c, cut_before(c.place, before)) for c in after)
     errors = [abs(cut.value - model.at(cut.centre)) for cut, model in pairs if model is not None]
     return max(errors, default=1.0)
 

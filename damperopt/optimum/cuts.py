@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -12,6 +12,11 @@ import numpy as np
 from .problem import DesignProblem
 
 __all__ = ["CONSTANT", "Cut", "about", "cut_before", "held_with", "monomials", "place_before"]
+
+Place = tuple[float, float, float]
+"""Speed [m/s], load [N], factor on the damping."""
+
+P = TypeVar("P", bound=tuple[float, ...])
 
 ACROSS = 1e-8
 """Cosine between a step and what it shows of a gradient below which it shows no curvature along itself."""
@@ -44,7 +49,7 @@ class Cut:
         (n, n) approximate second derivatives.
     """
 
-    place: tuple[float, float, float]
+    place: Place
     value: float
     gradient: np.ndarray
     centre: np.ndarray
@@ -80,7 +85,7 @@ class Cut:
 def about(
     problem: DesignProblem,
     design: Mapping[str, float],
-    numbers: Sequence[tuple[tuple[float, float, float], float, np.ndarray]],
+    numbers: Sequence[tuple[Place, float, np.ndarray]],
     before: Sequence[Cut | None],
     learning_step: float,
 ) -> list[Cut]:
@@ -128,7 +133,7 @@ def place_before(place: tuple[float, ...], earlier: Sequence[tuple[float, ...]])
     return min(near)[1] if near else None
 
 
-def held_with(held: Sequence[tuple[float, ...]], found: Sequence[tuple[float, ...]]) -> list[tuple[float, ...]]:
+def held_with(held: Sequence[P], found: Sequence[P]) -> list[P]:
     """Places that are held once others were found: each takes the place of the one that has moved there, of no other."""
     kept = list(held)
     for place in found:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..stability.yaw_mode import yaw_mode, yaw_modes
-from .cuts import Cut, about, cut_before, held_with
+from .cuts import Cut, Place, about, cut_before, held_with
 from .problem import DesignProblem
 
 __all__ = ["DampingHold", "DampingPoint", "least_damping"]
@@ -107,7 +107,7 @@ class DampingHold:
         A = model.state_matrix(design, speed, load, ca.DM(problem.data))
         self._slopes = ca.Function("slopes", [design, speed, load], [A, ca.densify(ca.jacobian(ca.vec(A), design))])
         self._angle, self._rate = (model.state_names.index(name) for name in ("yaw_angle", "yaw_rate"))
-        self._held, self._last = list[tuple[float, ...]](), list[Cut]()
+        self._held, self._last = list[Place](), list[Cut]()
 
     @property
     def required(self) -> float:

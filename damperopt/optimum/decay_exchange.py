@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..motion.decay import DecayPoint
-from .cuts import Cut, about, cut_before, held_with
+from .cuts import Cut, Place, about, cut_before, held_with
 from .damping_exchange import DampingHold, DampingPoint
 from .exchange import EnvelopeSolution, allowed_abscissa, missed_points
 from .program import CUTS, Program
@@ -61,7 +61,7 @@ class DecayHold:
 
     def __init__(self, solver: NlpSolver, more: Sequence[tuple[float, ...]] = ()):
         self._problem, self._analysis = solver.problem, solver.decay
-        self._always, self._held = list(more), list[tuple[float, ...]]()
+        self._always, self._held = list(more), list[Place]()
         self._last: list[Cut] = []
         self._last_peaks: list[Cut] = []
 

@@ -37,7 +37,8 @@ def left_out_by_number(study: Study, design: Mapping[str, float]) -> tuple[str, 
     rigid = [part for part in damper.elastic_parts() if not damper.is_sized(part) and part not in damper.given_compliance()]
     if damper.geometry == "spatial" and not rigid:
         return ()
-    full_study = study.replace(damper__geometry="spatial", damper__compliance=_sized(rigid, damper))
+    more = {"damper__compliance": _sized(rigid, damper), "requirements__limit_event": "torque"}
+    full_study = study.replace(damper__geometry="spatial", **more)
     full = dict(design) | {k: v for k, v in asked_sizes(full_study, dict(design)).items() if k not in design}
     found = []
     if damper.geometry != "spatial":

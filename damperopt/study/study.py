@@ -134,7 +134,8 @@ class Study(Record):
 
     def variable(self, name: str) -> Variable:
         """The design variable `name`, which the layout must have."""
-        return self._bounded[name]
+        variable: Variable = self._bounded[name] if name in self._bounded else getattr(self.design, name)
+        return variable
 
     @cached_property
     def _bounded(self) -> dict[str, Variable]:

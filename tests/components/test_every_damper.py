@@ -38,7 +38,7 @@ def damper_blocks():
             yield pytest.param(home | compliance | block, id=" ".join(filter(None, (tag, chain, "full" * i))))
 
 
-BLOCKS = list(damper_blocks())
+BLOCKS = once(list(damper_blocks()))
 
 
 @pytest.fixture(scope="module", params=BLOCKS)

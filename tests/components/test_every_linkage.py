@@ -55,7 +55,7 @@ def _usual(made):
     return tag == made.LAYOUT.DAMPER
 
 
-BLOCKS = list(layout_blocks())
+BLOCKS = once(list(layout_blocks()))
 
 
 @pytest.fixture(scope="module", params=BLOCKS)

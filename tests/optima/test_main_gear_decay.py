@@ -108,7 +108,7 @@ def test_price_of_decay_is_the_difference_of_two_optima(decaying, main_gear_with
     [
         ({"solver__engine": "cvodes"}, None),
         pytest.param({"solver__engine": "idas"}, None, marks=pytest.mark.verify),
-        ({"damper__series_stiffness": 3e7}, "11.76"),
+        ({"damper__series_stiffness": 3e7}, "11.75"),  # let go at rest: the dashpot carries nothing at first
         pytest.param({"damper__freeplay": {"gap": 5e-5}}, "11.80", marks=pytest.mark.verify),
         ({"damper__orifice": {"coefficient": 1e5}}, "11.66"),
     ],

@@ -28,6 +28,7 @@ def test_ends_with_a_certified_design(solved):
     assert damperopt.linear_gear(tangent, result.design).abscissa(37.0, 150e3)[0] > -0.1
 
 
+@pytest.mark.verify
 def test_no_lighter_design_is_near(solved):
     """Sixty thousand designs about it: those that are lighter miss a limit, or the exact margin."""
     study, result = solved

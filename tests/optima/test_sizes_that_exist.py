@@ -88,6 +88,7 @@ def _complete(stock, combinations):
     assert masses == sorted(masses)
 
 
+@pytest.mark.verify
 def test_catalogue(gear):
     found = damperopt.optimise(gear.replace(catalogue=ROWS))
     block = {"topology": "boeing", "kind": "bought"}
@@ -104,6 +105,7 @@ def test_catalogue(gear):
     assert set(each) == {("light",), ("heavy",)}
 
 
+@pytest.mark.verify
 @pytest.mark.slow
 def test_three_parts_of_the_new_layout(configs):
     """Links, support and bending arm, each of four tubes."""
@@ -123,6 +125,7 @@ def test_three_parts_of_the_new_layout(configs):
     assert found.stock.solved < len(tubes) ** 3
 
 
+@pytest.mark.verify
 def test_bound_of_a_box_is_below_all_that_it_holds(gear):
     available, tubes = lists([0.04, 0.05, 0.06], [0.0016, 0.003])
     search = StockSearch(gear.replace(available=available), _proved_alone)
@@ -142,6 +145,7 @@ def test_bound_of_a_box_is_below_all_that_it_holds(gear):
         assert alone is None or alone.objective >= whole.objective * (1 - 1e-9)
 
 
+@pytest.mark.verify
 def test_what_fails_a_check_is_passed_over(gear):
     """The lightest choice fails its proof here; the next one is taken, and the first is listed with the reason."""
     available, tubes = lists([0.04, 0.045, 0.05], [0.0016, 0.002])

@@ -50,6 +50,7 @@ def test_every_damping_of_the_interval(main_gear, surviving):
         assert model.at(design).abscissa(V, 150e3).max() < -0.1
 
 
+@pytest.mark.verify
 def test_an_optimum_of_one_damping_survives_no_other(linear, nominal):
     """Half of its damping misses the margin; an eighth is unstable, though the whole is proved stable."""
     found = certify(linear.replace(damper__damping_range=[0.5, 2.0]), nominal.design)
@@ -71,6 +72,7 @@ def test_force_is_that_of_the_largest_damping(main_gear, surviving):
     assert surviving.limit_event["damper_force"] == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("factor", [0.7, 0.5, 2.0])
 def test_decay(main_gear_with_decay, factor):
     """A single factor of 0.7 breaks the decay of an optimum of one damping; one made for the interval keeps it."""
@@ -91,6 +93,7 @@ def test_the_force_grows_with_the_damping():
         assert (np.diff(forces) > -2e-3 * forces[1:]).all(), (k, front, series)
 
 
+@pytest.mark.verify
 def test_oil_over_temperature_is_an_interval(linear):
     """The factors of the oil at both ends, given as such, make the same optimum; the result shows the dampings."""
     warm = linear.replace(solver__starts=1, damper__oil={"temperature": {"min": "-20 degC", "max": "158 degF"}})

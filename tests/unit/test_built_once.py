@@ -53,6 +53,7 @@ def test_one_optimisation_with_decay_builds_each_model_once(main_gear_with_decay
 
 @pytest.mark.skipif(not integrators.has_compiler(), reason="needs gcc")
 def test_studies_that_differ_in_numbers_are_translated_once(main_gear_with_decay):
+    integrators._compiled.cache_clear()  # of what other tests have translated
     study = main_gear_with_decay.replace(solver__engine="erk")
     heavier = study.replace(gear__yaw_inertia=1.1 * study.gear.yaw_inertia)
     points = [decay.DecayAnalysis(study).at(DESIGN, 40.0, 150e3)]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from components_of import damper_of
+from components_of import damper_block, damper_of
 from scipy.integrate import solve_ivp
 from table_gear import TYRE, table_gear
 
@@ -30,7 +30,7 @@ def gear(tyre=NONE, design=None, kind="magnetorheological", **damper):
         "reach": {"min": 0.1, "max": 0.4},
     }
     bounds = {name: {"start": value, "min": value / 2, "max": 1.5 * value} for name, value in (DESIGN | (design or {})).items()}
-    block = {"topology": "boeing", "kind": kind, "yield_per_ampere": 1e3, **damper}
+    block = damper_block("boeing", kind=kind, yield_per_ampere=1e3, **damper)
     return Study.model_validate(base | {"damper": block, "design": bounds, "requirements": required})
 
 

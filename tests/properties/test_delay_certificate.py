@@ -117,7 +117,7 @@ def trap(low=20.0, high=20.0):
     text = study_text(p, low, high)
     start = text.index("damper:")
     end = text.index("\n", start)
-    chain = "damper: {topology: boeing, geometry: planar, link_stiffness: %r}"
+    chain = "damper: {topology: boeing, geometry: planar, compliance: rigid, link_stiffness: %r}"
     ell = float(0.6 * np.sin(np.deg2rad(31.0)))
     design = {"c_lambda": 4e6 / ell**2, "k_lambda": 2e5 / ell**2, "L": 0.6, "gamma": float(np.deg2rad(31.0))}
     ranges = "\n".join(f"  {name}: {value!r}" for name, value in design.items())

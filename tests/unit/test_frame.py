@@ -42,7 +42,7 @@ def case(request, configs):
     design = LAYOUT | SIZES[links]
     design |= {"k_lambda": 1e6} if topology == "boeing" else {"b": b, "I_arm": 1e-6}
     design |= SUPPORTS[support] if topology == "arreaza" else {}
-    study = damperopt.load(configs / "main_gear.yaml").replace(damper=damper)
+    study = damperopt.load(configs / "main_gear.yaml").replace(damper=damper, tyre__contact="leading_point")
     return study, design, compliance(topology, design, E, links, support, root)
 
 

@@ -16,7 +16,7 @@ from damperopt.stability.linear import LinearModel
 from damperopt.tyres.base import Linear
 
 LINE = Linear(S["C_F"], S["C_M"], 0.3, 0.1)
-LINKAGE = """damper: {topology: boeing, geometry: planar%s}
+LINKAGE = """damper: {topology: boeing, geometry: planar, compliance: rigid%s}
 requirements: {stability_margin: 0.1, limit_torque: 12500, lug_distance: {min: 0.4, max: 1.1}, reach: {min: 0.1, max: 0.4}}
 design: {c_lambda: 1e4, k_lambda: 4e6, L: 0.6, gamma: 31 deg}
 """

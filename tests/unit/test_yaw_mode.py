@@ -38,7 +38,7 @@ def test_nor_in_the_check(main_gear):
         def at(self, design):
             return LinearGear(matrices, states, None)
 
-    ratio, _, load = check_damping(study, study.start, Model())
+    ratio, _, load, _ = check_damping(study, study.start, Model())
     assert ratio == pytest.approx(ZETA, abs=0.01)
     assert load == 150e3
 

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from pydantic import ConfigDict
 
-__all__ = ["FINITE", "Certificate", "DecayCheck", "OperatingPoint", "Verdict"]
+__all__ = ["FINITE", "Certificate", "DecayCheck", "OperatingPoint"]
 
 FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
 """What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""

@@ -78,7 +78,7 @@ def test_a_draw_that_makes_no_study_is_a_recorded_failure(nose, tmp_path):
 
 def test_what_raises_at_a_point_is_its_record_and_is_tried_again_next_time(nose, tmp_path, monkeypatch):
     sweep = sweep_of(nose, **ANALYSIS)
-    monkeypatch.setattr("damperopt.sweep.points.worst_points", lambda *given: 1 / 0)
+    monkeypatch.setattr("damperopt.sweep.points.worst_over_damping", lambda *given: 1 / 0)
     records = run_sweep(sweep, tmp_path, inline, 1)
     assert {r.status for r in records.values()} == {"error"}
     assert "ZeroDivisionError" in records[0].message

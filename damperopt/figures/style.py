@@ -95,9 +95,9 @@ def save(figure: Any, folder: Path, name: str) -> list[Path]:
         figure.dpi = usual
         figure.set_layout_engine("none")
         FigureCanvasSVG(figure).print_svg(paths[1], metadata={"Date": None})
-    except Exception:
+    except Exception:  # whatever it was: half of a figure is none
         for path in paths:
-            path.unlink(missing_ok=True)  # half of a figure is none
+            path.unlink(missing_ok=True)
         raise
     finally:
         plt.close(figure)

@@ -63,7 +63,7 @@ def _in_space(study: Study, full_study: Study, design: Mapping[str, float], full
     stiff = [float(link.torsional_stiffness) for link in (here, there)]
     words = f"geometry {study.damper.geometry}: in space k_psi is {stiff[1]:.3g} instead of {stiff[0]:.3g} N m/rad"
     values = DesignProblem(full_study).values(full)
-    if "arm_stress" in values:
-        stress, allowed = values["arm_stress"]
-        words += f", and the arm carries {stress / allowed:.3g} times its allowable stress"
+    carried = [stress / allowed for name, (stress, allowed) in values.items() if name in ("arm_limit", "arm_ultimate")]
+    if carried:
+        words += f", and the arm carries {max(carried):.3g} times its allowable stress"
     return words

@@ -10,13 +10,13 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from .answers.loads import LoadRow, MarginRow
+from .answers.older import completed
+from .answers.search import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
+from .answers.stock import StockCandidate, StockResult
+from .answers.verdicts import FINITE, Certificate, DecayCheck, OperatingPoint, Verdict
 from .errors import ConfigError
-from .load_rows import LoadRow, MarginRow
-from .older_results import completed
 from .reading import MOST_RESULT_BYTES, printable, text_of
-from .search_rows import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
-from .stock_rows import StockCandidate, StockResult
-from .verdicts import FINITE, Certificate, DecayCheck, OperatingPoint, Verdict
 
 __all__ = [
     "SCHEMA_VERSION",

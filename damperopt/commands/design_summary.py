@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.markup import escape
 
+from ..answers.stock import candidate_cells, stock_words
 from ..output.margins import critical_rows, margin_words
 from ..results import DesignResult, StockResult
-from ..stock_rows import candidate_cells, stock_words
 from ..study.components import unit_of_name
 from ..study.scope import covers
 from ..study.study import Study

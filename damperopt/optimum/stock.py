@@ -17,9 +17,9 @@ from itertools import count
 from typing import Any
 
 from .. import interrupts
+from ..answers.stock import StockCandidate, StockResult
 from ..errors import ConfigError
 from ..results import DesignResult, Infeasibility
-from ..stock_rows import StockCandidate, StockResult
 from ..strength.stock import Tube, tubes
 from ..study.study import Study
 from .answer import missing_words, nothing_yet

@@ -10,11 +10,11 @@ from typing import Any
 
 import yaml
 
+from ..answers.stock import candidate_cells, stock_words
 from ..errors import ConfigError
 from ..optimum.left_out import left_out_by_number
 from ..results import DesignResult, load_result
 from ..stability.modes import ModeTable, track_modes
-from ..stock_rows import candidate_cells, stock_words
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from . import facts, margins, words

@@ -2,6 +2,7 @@
 
 import itertools
 
+import chains
 import numpy as np
 import pytest
 import standard
@@ -60,8 +61,8 @@ def test_equations(study):
     standard.mirrored_motions_are_motions(study)
     standard.smooth_goes_to_exact(study)
     standard.declared_powers_are_kept_exactly(study)
-    standard.states_of_the_chain(study)
-    standard.energy_is_kept(study)
+    chains.states_of_the_chain(study)
+    chains.energy_is_kept(study)
     standard.record_survives(study)
 
 

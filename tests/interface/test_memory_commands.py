@@ -7,13 +7,11 @@ import typer
 from memory_twin import O, S, gear, study_text
 
 from damperopt.commands.analyse import analyse
-from damperopt.commands.shared import out
 
 
 @pytest.fixture
-def said(monkeypatch, capsys):
+def said(capsys):
     """What a command prints, in one line."""
-    monkeypatch.setattr(out, "file", None, raising=False)
     return lambda: " ".join(capsys.readouterr().out.split())
 
 

@@ -19,6 +19,7 @@ from ..strength.cylinder import (
     cylinder_mass,
     oil_stiffness,
     piston_area,
+    rod_column,
     rod_diameters,
     rod_length,
     rod_stiffness,
@@ -136,7 +137,9 @@ class Hydraulic(Oiled):
         given = () if self.bore is None else self._pressed(area, least, relaxed)
         sized = self._cylinder(replace(event, stroke=stroke), model, event.design["rod_diameter"], area, given)
         masses = {part: mass + model.damper_fixed_mass for part, mass in sized.masses.items()}
-        return replace(sized, masses=masses, sizes=(*sized.sizes, *chosen))
+        (rod,) = sized.sizes
+        column = {"rod_column": (rod_column(replace(event, stroke=stroke), model), ("requirements.ultimate_factor", *torque))}
+        return replace(sized, masses=masses, sizes=(replace(rod, least={**rod.least, **column}), *chosen))
 
     def _cylinder(self, event: LimitEvent, model: Any, diameter: Expr, area: Expr, capacities: tuple[Capacity, ...]) -> Sized:
         rod = Size("rod_diameter", "m", diameter, rod_diameters(event, model), start=0.02, lower=1e-5, upper=10.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..expressions.calculus import Expr, sqrt
+from ..expressions.calculus import Expr, sqrt, where
 from ..ports.sizing import LimitEvent
 from .materials import allowable_stress
 
@@ -14,6 +14,7 @@ __all__ = [
     "cylinder_mass",
     "oil_stiffness",
     "piston_area",
+    "rod_column",
     "rod_diameters",
     "rod_length",
     "rod_stiffness",
@@ -46,6 +47,23 @@ def rod_diameters(event: LimitEvent, model: Any) -> dict[str, tuple[Expr, tuple[
         "rod_buckling": ((buckling / (math.pi**3 * steel.youngs_modulus)) ** 0.25, ("mass.rod_buckling_factor",)),
         "rod_minimum": (model.least_rod_diameter, ("mass.least_rod_diameter",)),
     }
+
+
+def rod_column(event: LimitEvent, model: Any) -> Expr:
+    """Least rod diameter [m] as a column with pinned ends at ultimate load, as its margin of safety has it.
+
+    Euler's load where its stress is below half the yield strength, else Johnson's parabola, which yields first.
+
+    Parameters
+    ----------
+    event : LimitEvent
+    model : MassModel
+    """
+    steel, length = model.damper_material, rod_length(event, model)
+    E, yields, F = steel.youngs_modulus, steel.yield_strength, event.ultimate_factor * event.damper_force
+    euler = (64 * F * length**2 / (math.pi**3 * E)) ** 0.25
+    johnson = sqrt(4 / (math.pi * yields) * (F + yields**2 * length**2 / (math.pi * E)))
+    return where(math.pi**2 * E * euler**2 / (16 * length**2) < yields / 2, euler, johnson)
 
 
 def piston_area(event: LimitEvent, model: Any) -> Expr:

@@ -1,6 +1,7 @@
 """Load table, margins of safety and energy of three gears of no aircraft, each number written out once more."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,9 @@ from scipy.integrate import cumulative_simpson
 
 import damperopt
 from damperopt.optimum.margins import load_rows, margins
+from damperopt.strength.cylinder import rod_column
+from damperopt.strength.margins import Column, column_margins
+from damperopt.study.mass_model import MassModel
 from damperopt.study.study import Study
 
 STRENGTHS = {"boeing": (205e9, 1586e6, 1931e6), "utas": (207e9, 1103e6, 1172e6), "arreaza": (117e9, 1185e6, 1233e6)}
@@ -153,3 +157,14 @@ def test_energy_of_a_transient(case):
     change = cumulative_simpson(power - lost, x=t, initial=0)
     assert np.ptp(kept) > 0.5 * kept[0], "nothing happens"
     assert np.abs(kept - kept[0] - change).max() < QUADRATURE * kept[0]
+
+
+@pytest.mark.parametrize(("force", "stroke"), [(2e3, 0.02), (40e3, 0.004), (150e3, 0.006)])
+def test_rod_is_sized_as_its_margin_checks_it(force, stroke):
+    """Slender and stocky rods: at the least diameter the margin of the column is nothing left."""
+    model = MassModel()
+    event = SimpleNamespace(damper_force=force, stroke=stroke, ultimate_factor=1.5)
+    diameter, length = rod_column(event, model), 2 * stroke + model.dead_length
+    column = Column(math.pi / 4 * diameter**2, math.pi / 64 * diameter**4, length)
+    (margin,) = column_margins("rod", "case", force, column, model.damper_material, 1.5)
+    assert margin.value == pytest.approx(0.0, abs=1e-12)

@@ -206,7 +206,7 @@ class DelayGear(LinearGear):
         return self.named
 
     def modes(self, speeds: Any, loads: Any, spare: int = SPARE) -> tuple[np.ndarray, np.ndarray]:
-        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and each state's part in them, (m, n, k)."""
+        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and their states' parts (m, n, k)."""
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
         values = self.roots(V, F_z, len(self.named) + spare)
         A, _ = self.frozen(V, F_z).at(values)

@@ -205,10 +205,10 @@ class DelayGear(LinearGear):
         """Of the structure and the foremost contact points: as many as there are roots when the delay vanishes."""
         return self.named
 
-    def modes(self, speeds: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-        """The rightmost eigenvalues (m, k) [1/s], some more than principal states, and how each state takes part, (m, n, k)."""
+    def modes(self, speeds: Any, loads: Any, spare: int = SPARE) -> tuple[np.ndarray, np.ndarray]:
+        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and their states' parts (m, n, k)."""
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
-        values = self.roots(V, F_z, len(self.named) + SPARE)
+        values = self.roots(V, F_z, len(self.named) + spare)
         A, _ = self.frozen(V, F_z).at(values)
         n = A.shape[-1]
         near = (values + 1e-10 * (1 + np.abs(values)))[..., None, None] * np.eye(n) - A

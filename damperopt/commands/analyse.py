@@ -57,7 +57,7 @@ def analyse(
         worst=worst_over_damping(model, study, values)[0],
         certificates=certificates,
         searched=(low, high),
-        wave=shortest_wavelength(study, tables),
+        wave=shortest_wavelength(study, gear),
         marginal=any(marginal_throughout(gear, load, low, high) for load in study.envelope.loads),
         left_out=left_out_by_number(study, values),
     )

@@ -49,6 +49,7 @@ def simulate(
     from ..quantities.record import Force, Speed, Time
     from ..results import load_result
     from ..stability.linear import linear_gear
+    from ..stability.wavelength import shortest_wavelength
     from . import summary
     from .arguments import disturbance_of, quantity
 
@@ -89,7 +90,9 @@ def simulate(
     write_run(folder, write)
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
     sized = load_result(design).limit_event if design is not None else {}
+    wave = shortest_wavelength(study, gear, [at_speed], [motion.load])
     summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    summary.show_contact_line(out, study, wave)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

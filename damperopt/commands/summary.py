@@ -19,7 +19,7 @@ from ..quantities.record import quantity_of
 from ..quantities.shown import rounded, scale, unit_text
 from ..results import Certificate, OperatingPoint
 from ..stability.critical import CriticalSpeed
-from ..stability.wavelength import Wavelength
+from ..stability.wavelength import Wavelength, contact_line_words
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
@@ -34,6 +34,7 @@ __all__ = [
     "show_analysis",
     "show_chart",
     "show_claims",
+    "show_contact_line",
     "show_motion",
     "show_tyre",
 ]
@@ -162,19 +163,16 @@ def show_analysis(
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
         console.print(f"Exact certificate, {goal}{dampings(certificate)}: {verdict}", soft_wrap=True)
     console.print("Not checked: " + escape("; ".join((*left_out, *leaves_out(study)))), soft_wrap=True, style="dim")
-    if wave is not None:
-        _show_wavelength(console, wave, study.tyre.contact.least_wave())
+    show_contact_line(console, study, wave)
 
 
-def _show_wavelength(console: Console, wave: Wavelength, least: float) -> None:
-    console.print(
-        f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.2g} contact lengths, at {wave.speed:g} m/s",
-        soft_wrap=True,
-    )
-    if wave.contact_lengths < least:
+def show_contact_line(console: Console, study: Study, wave: Wavelength | None) -> None:
+    """The shortest wave, and what it means for a contact line that is not the exact one."""
+    if words := contact_line_words(study, wave):
+        console.print(f"[yellow]Rests on[/]: {escape(words[0])}.", soft_wrap=True)
+    elif wave is not None:
         console.print(
-            f"[yellow]Below {least:.3g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
-            "the verdict holds for this tyre law, and may not for the tyre.",
+            f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.3g} contact lengths, at {wave.speed:.4g} m/s",
             soft_wrap=True,
         )
 

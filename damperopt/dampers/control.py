@@ -8,20 +8,20 @@ The actuator acts where linkage and damper act, between piston and strut, beside
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
 from ..quantities.named import Output, State
-from ..quantities.record import Record, Time, Torque, refuse
+from ..quantities.record import Record, Time, Torque
 from ..quantities.units import Quantity
 
 __all__ = ["ACTUATOR", "CONTROL_OUTPUTS", "Control", "Controlled", "Gain"]
 
 _Coefficient = Annotated[float, Quantity("1", example="1000")]
-_Mass = Annotated[float, Quantity("kg", at_least=0, example="2 kg")]
+_Mass = Annotated[float, Quantity("kg", above=0, example="2 kg")]
 
 ACTUATOR = State("actuator_torque", "N m", "actuator")
 """What an actuator with a lag adds to the states."""
@@ -70,14 +70,8 @@ class Control(Record):
     """Most that the actuator gives [N m], which only simulation has; left out: no end."""
     smoothing: Annotated[float, Quantity("1", above=0, at_most=0.5)] = 0.01
     """Width of the rounded corner at the limit in the smooth version, as a fraction of it."""
-    mass: _Mass = 0.0
-    """Of actuator, sensors and their supply, counted as they are [kg]."""
-
-    @model_validator(mode="after")
-    def _gives_something(self) -> Self:
-        if not any(gain.powers for gain in self.gains.values()):
-            raise refuse("gains", "nothing but zeros", "a gain other than 0, or no block control")
-        return self
+    mass: _Mass | None = None
+    """Of actuator, sensors and their supply, counted as it is [kg]; left out: not counted."""
 
     @property
     def SPEED_POWERS(self) -> tuple[int, ...]:  # noqa: N802  # as components name theirs

@@ -151,7 +151,7 @@ def gain_schedule(
 def _plant(study: Study) -> Study:
     """The gear without control, on a contact line that states stand for."""
     line = study.tyre.contact.realisation("search")
-    bare = study if study.damper.control is None else study.replace(damper__control=None)
+    bare = study.without_control()
     return bare if line is study.tyre.contact else bare.replace(tyre__contact=line.model_dump())
 
 

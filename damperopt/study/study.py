@@ -110,6 +110,9 @@ class Study(Record):
     def _controllable(self) -> None:
         """What a control measures and commands."""
         control, damper = self.damper.control, self.damper
+        if damper.actuator is None and self.requirements is not None and self.requirements.fail_safe_margin is not None:
+            words = "nothing to fail: the proof of the margin has no actuator and no current"
+            raise refuse("requirements.fail_safe_margin", words, "stability_margin, or an actuator (damper.control)")
         if control is None:
             return
         known = [state.name for state in (*self.gear.states(), *(self.tyre.states if self.tyre.contact.RATIONAL else ()))]
@@ -150,6 +153,19 @@ class Study(Record):
         if self.requirements is None:
             raise ConfigError(f"{self.name}: requirements: missing key; allowed: the block requirements, with stability_margin")
         return self.requirements
+
+    def without_control(self) -> Study:
+        """The study with the damper alone."""
+        if self.damper.control is None:
+            return self
+        given = self.requirements is not None and self.requirements.fail_safe_margin is not None
+        return self.replace(damper__control=None, **({"requirements__fail_safe_margin": None} if given else {}))
+
+    @property
+    def fail_safe_margin(self) -> float:
+        """Margin that the gear keeps with its actuator off [1/s]."""
+        given = self.requirements.fail_safe_margin if self.requirements is not None else None
+        return 0.0 if given is None else given
 
     def variable(self, name: str) -> Variable:
         """The design variable `name`, which the layout must have."""

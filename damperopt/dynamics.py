@@ -74,7 +74,11 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         torque = _with_actuator(torque, damper.actuator, measured, speed, corners)
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)
 
-    states = [*gear.states(), *(state for own in tyre_states for state in own), *_chain(torque.states, (*damper.STATES, ACTUATOR))]
+    states = [
+        *gear.states(),
+        *(state for own in tyre_states for state in own),
+        *_chain(torque.states, (*damper.STATES, ACTUATOR)),
+    ]
     rates = [motion.rates[state.name] for state in gear.states()]
     rates += [rate for contact in contacts for rate in contact.rates]
     rates += [torque.rates[name] for name in torque.states]

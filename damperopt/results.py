@@ -129,8 +129,9 @@ class DesignResult(_Record):
     `limit_event` holds the peaks that size the parts [SI]. `decided_by` says what the mass hangs on: per cent of mass for one
     per cent of the limits of each kind of constraint.
     `verdict` is that of the certificate, `covers` and `leaves_out` say what it is about and what it is not; `witness` has the
-    coordinates of a point that refutes it by name [SI]. `fail_safe` is the certificate of the gear with its actuator off. `rests_on` says what kind of numbers strength and life rest on,
-    `implausible` what a practitioner would not believe, `completed` what a file of an older version did not hold.
+    coordinates of a point that refutes it by name [SI]. `rests_on` says what kind of numbers strength and life rest on,
+    `implausible` what a practitioner would not believe, `completed` what a file of an older version did not hold. `fail_safe`
+    is the certificate of the gear with its actuator off, where it has one.
     """
 
     schema_version: Literal[2] = 2

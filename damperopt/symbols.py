@@ -61,7 +61,7 @@ def symbolic(study: Study) -> SymbolicStudy:
             if isinstance(value, BaseModel) and key not in _constants(record):
                 value = twin(value, inner)
             elif isinstance(value, Mapping) and key not in _constants(record):
-                value = value | {name: twin(part, f"{inner}.{name}") for name, part in _records(value)}
+                value = {**value, **{name: twin(part, f"{inner}.{name}") for name, part in _records(value)}}
             fields[key] = symbols.get(inner, value)
         return type(record).model_construct(**fields)
 

@@ -74,7 +74,7 @@ class Control(Record):
     """Of actuator, sensors and their supply, counted as it is [kg]; left out: not counted."""
 
     @property
-    def SPEED_POWERS(self) -> tuple[int, ...]:  # noqa: N802  # as components name theirs
+    def SPEED_POWERS(self) -> tuple[int, ...]:  # as components name theirs
         """Powers of V in the gains."""
         return tuple(sorted({0, *(k for gain in self.gains.values() for k in gain.powers)}))
 

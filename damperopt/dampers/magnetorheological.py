@@ -15,8 +15,8 @@ from ..expressions.corners import Corners, Linear, Smooth
 from ..ports.sizing import Force, LimitEvent, Size, Sized
 from ..quantities.named import DesignVariable, Output, State
 from ..quantities.record import Density, Fraction, Length, Time
-from ..quantities.units import Quantity
 from ..quantities.record import Force as ForceNumber
+from ..quantities.units import Quantity
 from ..strength.cylinder import bore, cylinder_mass, piston_area, rod_diameters, rod_length
 from .base import FORGOTTEN, Context, Damper
 

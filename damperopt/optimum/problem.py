@@ -123,7 +123,11 @@ class DesignProblem:
         self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
         damping = symbols.study.damper.damping({**design, **link.as_printed})
         self.has_one_damping = damping is not None
-        self.plain = self.has_one_damping and self.fail_safe is None and dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
+        self.plain = (
+            self.has_one_damping
+            and self.fail_safe is None
+            and dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
+        )
         damping = ca.SX.nan() if damping is None else damping * link.damper_lever**2
         self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, damping])
 

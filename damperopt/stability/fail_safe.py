@@ -1,7 +1,7 @@
 """The gear with its actuator off, which has a margin of its own: further places of the same problem.
 
-A place is a speed, a load and a factor on the damping; a factor below 0 stands for its size with the actuator off. Abscissae there
-are moved by what that margin differs from the other, so that one limit serves all places.
+A place is a speed, a load and a factor on the damping; a factor below 0 stands for its size with the actuator off. Abscissae
+there are moved by what that margin differs from the other, so that one limit serves all places.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Gains over speed that are least in a quadratic cost (LQR), for all states or for those that are measured, as polynomials of V.
+"""Gains over speed of least quadratic cost (LQR), for all states or for those that are measured, as polynomials of V.
 
-The cost is the integral of sum (x_i/x_i0)^2 + (u/u_0)^2, with a size for each state that counts and one for the torque (Bryson's
-rule), after a kick in yaw. With every state measured the gains are those of Riccati's equation; with some of them the best of
-that form, by the descent of Anderson and Moore from the projection of the full ones: Levine & Athans, IEEE Trans. Automatic
-Control 15 (1970) 44; Makila & Toivonen, IEEE Trans. Automatic Control 32 (1987) 658. Nothing is proved here: what the fitted
-gains do is for `certify` to say.
+The cost is the integral of sum (x_i/x_i0)^2 + (u/u_0)^2, with a size for each state that counts and one for the torque
+(Bryson's rule), after a kick in yaw. With every state measured the gains are those of Riccati's equation; with some of them
+the best of that form, by the descent of Anderson and Moore from the projection of the full ones: Levine & Athans, IEEE Trans.
+Automatic Control 15 (1970) 44; Makila & Toivonen, IEEE Trans. Automatic Control 32 (1987) 658. Nothing is proved here: what
+the fitted gains do is for `certify` to say.
 """
 
 from __future__ import annotations

@@ -50,11 +50,13 @@ def _controlled(damper: Any) -> list[str]:
     if damper.control is None:
         return []
     if damper.actuator is None:
-        return ["The law of damper.control commands a current, which the certificate does not hold: it is of the damper without."]
+        return [
+            "The law of damper.control commands a current, which the certificate does not hold: it is of the damper without."
+        ]
     lag = "" if damper.control.lag is None else f" and the lag of {1e3 * damper.control.lag:g} ms"
     return [
-        f"It holds the actuator with its gains at every speed{lag}, as long as it does not saturate; a second certificate is of "
-        "the gear with the actuator off."
+        f"It holds the actuator with its gains at every speed{lag}, as long as it does not saturate; a second certificate is "
+        "of the gear with the actuator off."
     ]
 
 

@@ -131,6 +131,7 @@ def show_analysis(
     searched: tuple[float, float],
     wave: Wavelength | None,
     marginal: bool = False,
+    fail_safe: Sequence[Certificate] = (),
     left_out: Sequence[str] = (),
 ) -> None:
     """Critical speeds, worst point and certificates of a given design."""
@@ -156,8 +157,9 @@ def show_analysis(
         )
     console.print(worst_words(worst, certificates[0]))
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
-    for certificate in certificates:
+    for i, certificate in enumerate((*certificates, *fail_safe)):
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
+        goal += ", actuator off" if i >= len(certificates) else ""
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"

@@ -46,7 +46,8 @@ class Screening:
     """
 
     def __init__(self, study: Study):
-        bare = study.replace(damper={"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0})
+        own = {} if study.gear.strut is None else {"gear__strut__torsional_stiffness": None}  # in the place of what is asked
+        bare = study.replace(damper={"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}, **own)
         self._study, self._model = study, LinearModel(bare)
         self._data = dict(zip(data_names(bare), data_values(bare), strict=True))
 

@@ -28,7 +28,7 @@ def covers(study: Study) -> list[str]:
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
-    found += _uncertain(study)
+    found += _uncertain(study) + _stroke(study)
     if words := study.tyre.origin():
         found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
@@ -42,6 +42,16 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _stroke(study: Study) -> list[str]:
+    """At which strokes of the shock strut it holds, where the study has one."""
+    if study.gear.strut is None:
+        return []
+    light, heavy = min(study.envelope.loads), max(study.envelope.loads)
+    ends = [f"{1e3 * study.gear.stroke(load):.4g} mm at {load / 1e3:.4g} kN" for load in dict.fromkeys((light, heavy))]
+    words = f"At each load the shock strut stands in balance ({' to '.join(ends)}), and links, height and stiffness follow it"
+    return [f"{words}; its motion is no part of the gear (quasi-static). Parts are sized with it fully out."]
 
 
 def _uncertain(study: Study) -> list[str]:

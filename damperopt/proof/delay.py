@@ -33,8 +33,8 @@ from ..study.study import Study
 from .boxes import Box, Strips
 from .damping import Interval
 from .quasi import OverDamping, Quasipolynomial
-from .varying import structure_of
 from .rationals import decimal
+from .varying import structure_of
 
 __all__ = ["certify_delay", "roots_to_the_right"]
 

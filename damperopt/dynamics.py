@@ -30,11 +30,14 @@ from .linkages.elastic import elastic_linkage
 from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
 from .ports.linkage import Linkage
 from .ports.motion import Torque
-from .quantities.named import State
+from .quantities.named import Output, State
 from .strength.members import root_stress_of_force
 from .symbols import SymbolicStudy
 
 __all__ = ["build"]
+
+STROKE = Output("strut_stroke", "m", "of the shock strut from fully out")
+"""What a gear with a shock strut shows."""
 
 SIDES = {1: ("",), 2: ("_left", "_right")}
 """Suffixes of the names of tyre states by the number of wheels."""
@@ -56,16 +59,18 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
         this order. Algebraic unknowns: those of the spatial linkage, and what has no equation of its own between them.
     """
     study, corners = symbols.study, corners or Linear()
-    gear, tyre, damper = study.gear, study.tyre, study.damper
+    tyre, damper, strut = study.tyre, study.damper, study.gear.strut
     design = {variable.name: ca.SX.sym(variable.name) for variable in study.damper.variables()}
     speed, load, yaw_torque = ca.SX.sym("speed"), ca.SX.sym("load"), ca.SX.sym("yaw_torque")
+    stroke = study.gear.stroke(load)
+    gear = study.gear.at(load, stroke)
 
     x = {state.name: ca.SX.sym(state.name) for state in gear.states()}
     wheels = gear.wheels(x, speed, load)
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
-    link = elastic_linkage(study, design)
+    link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load))
     attachment = gear.attachments(x)["damper"]
     measured = x | {state.name: own for state, own in zip(tyre_states[0], strings[0], strict=True)}
     context = Context(load, speed, wanted=_wanted(damper, link, measured, speed))
@@ -88,7 +93,9 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None) -> DAE:
     for i, contact in enumerate(contacts):
         outputs |= {_named(name, i, len(wheels)): value for name, value in contact.outputs.items()}
         units |= {_named(output.name, i, len(wheels)): output.unit for output in tyre.OUTPUTS}
-    for member in damper.members(design):
+    if strut is not None:
+        outputs[STROKE.name], units[STROKE.name] = ca.SX(stroke), STROKE.unit
+    for member in damper.members(design, stroke):
         if member.kind == "arm":
             units["arm_stress"] = "Pa"
             outputs["arm_stress"] = root_stress_of_force(member, torque.outputs["spring_force"], study)

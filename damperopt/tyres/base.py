@@ -15,12 +15,13 @@ from pydantic import model_validator
 
 from ..expressions.calculus import Expr
 from ..expressions.corners import Corners
+from ..ports.over_load import OverLoad
 from ..ports.sizing import Peaks
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
 from ..quantities.record import Pressure, Record, refuse
 from ..quantities.units import Quantity
-from .over_load import LengthOverLoad, OverLoad
+from .over_load import LengthOverLoad
 
 __all__ = ["AtLoad", "ContactLine", "Linear", "SlipLaw", "Slips", "Tyre"]
 

@@ -9,10 +9,11 @@ from rich.console import Console
 from rich.markup import escape
 
 from ..cycles.branches import Question, worded
+from ..cycles.criticality import Criticality
 from ..cycles.orbit import Branch, Orbit
 from ..quantities.shown import shown
 
-__all__ = ["show_cycles"]
+__all__ = ["show_criticality", "show_cycles"]
 
 EXACT = 1e-6
 """Relative error of amplitude and period below which nothing is said of it."""
@@ -81,3 +82,18 @@ def _hidden(console: Console, branch: Branch) -> None:
         "cycle does not die",
         soft_wrap=True,
     )
+
+
+def show_criticality(console: Console, found: Sequence[Criticality]) -> None:
+    """How the limit cycles of the critical speeds begin."""
+    for c in found:
+        stable, unstable = ("below", "above") if c.stable_below else ("above", "below")
+        words = {
+            "supercritical": f"supercritical: a stable limit cycle begins there with amplitude zero and grows {unstable} it",
+            "subcritical": (
+                f"[bold]subcritical[/]: hidden shimmy {stable} it, where small disturbances die: one larger than an unstable "
+                "limit cycle does not ('damperopt cycles' shows how large and how far)"
+            ),
+            "degenerate": "neither super- nor subcritical to third order: the laws have no curvature that says it",
+        }[c.kind]
+        console.print(f"Hopf at {worded(c.speed, 'm/s')}, {worded(c.load, 'N')}: {words}.", soft_wrap=True)

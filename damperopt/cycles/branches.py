@@ -14,7 +14,7 @@ from ..stability.critical import critical_speeds
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from .collocation import Leg, Path, tableau
-from .continuation import Along, follow
+from .continuation import Along, follow, scales_of
 from .flow import Flow
 from .hopf import HopfPoint, first_orbit, hopf_points, is_odd
 from .newton import NoOrbit, corrected, phase
@@ -153,8 +153,7 @@ def _from(question: Question, flow: Flow, point: HopfPoint, report: Callable[[Or
     axis = question.axis
     parameters = question.parameters(flow, point.parameter)
     path, growth = first_orbit(flow, point, parameters, is_odd(flow, parameters))
-    sizes = np.abs(point.vector)
-    along = Along(flow, axis.name, axis.low, axis.high, np.where(sizes > 0, SMALL * sizes, 1.0))
+    along = Along(flow, axis.name, axis.low, axis.high, SMALL * scales_of(flow, np.abs(point.vector)))
     metric = along.metric(path)
     growth = growth.times(1 / np.sqrt(growth.along(growth, metric)))
     begin = growth.times(FIRST).moves(path, along.direction)

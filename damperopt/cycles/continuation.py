@@ -15,7 +15,7 @@ from .flow import Flow
 from .newton import Condition, Corrected, Metric, NoOrbit, Tangent, corrected, phase, tangent
 from .orbit import Orbit, orbit_of
 
-__all__ = ["Along", "follow"]
+__all__ = ["Along", "follow", "scales_of"]
 
 FIRST, LARGEST, LEAST = 0.05, 0.25, 1e-5
 """Steps along the branch, in amplitudes and in `WIDTHS` of the range."""
@@ -28,6 +28,17 @@ MOST = 1000
 
 FEW = 3
 """Iterations up to which the next step is longer."""
+
+
+LITTLE = 1e-2
+"""Of the largest state with the same unit: rounding of that one is larger than what counts of a smaller one."""
+
+
+def scales_of(flow: Flow, sizes: np.ndarray) -> np.ndarray:
+    """Sizes (n,) of the states of a motion, none below `LITTLE` of the largest with the same unit; 1 where none moves."""
+    units = np.array([state.unit for state in flow.states])
+    largest = np.array([sizes[units == unit].max() for unit in units])
+    return np.where(largest > 0, np.maximum(sizes, LITTLE * largest), 1.0)
 
 
 @dataclass(frozen=True)
@@ -72,6 +83,7 @@ class Along:
     def metric(self, path: Path) -> Metric:
         """Scales on a path: the sizes of its states, but not less than `scales`."""
         sizes = np.sqrt((path.states**2).mean(axis=0))
+        sizes = scales_of(self.flow, sizes) if sizes.any() else sizes
         return Metric(np.maximum(sizes, self.scales), (self.high - self.low) / WIDTHS or 1.0)
 
     def solved(self, path: Path, along: Tangent | None, metric: Metric) -> Corrected:

@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ..cycles.criticality import Criticality
 from ..cycles.orbit import Branch, Orbit
+from ..stability.critical import CriticalSpeed
 
-__all__ = ["branch_record", "write_branches", "write_cycle"]
+__all__ = ["branch_record", "write_branches", "write_critical", "write_cycle"]
 
 
 def write_branches(folder: Path, branches: Sequence[Branch], question: Mapping[str, Any]) -> None:
@@ -79,3 +81,17 @@ def write_cycle(path: Path, orbit: Orbit) -> None:
     header = ",".join(["time [s]", *(f"{flow.states[i].name} [{flow.states[i].unit}]" for i in kept)])
     table = np.column_stack([time, states[:, kept]])
     np.savetxt(path, table, fmt="%.10e", delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+def write_critical(path: Path, critical: Sequence[CriticalSpeed], criticality: Sequence[Criticality]) -> None:
+    """Critical speeds as CSV, with how their limit cycles begin; empty where none does."""
+    begins = {(c.speed, c.load): c for c in criticality}
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        head = ["speed [m/s]", "load [N]", "kind", "frequency [Hz]", "destabilising", "boundary", "touching"]
+        writer.writerow([*head, "criticality", "growth rate per amplitude squared", "amplitude of"])
+        for c in critical:
+            facts = [str(value).lower() for value in (c.destabilising, c.boundary, c.touching)]
+            found = begins.get((c.speed, c.load)) if c.kind == "hopf" and not c.touching else None
+            more = [found.kind, f"{found.coefficient:.9g}", found.leading] if found else ["", "", ""]
+            writer.writerow([f"{c.speed:.12g}", f"{c.load:.12g}", c.kind, f"{c.frequency:.9g}", *facts, *more])

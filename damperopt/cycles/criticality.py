@@ -7,7 +7,7 @@ A^T p = -i omega p, <p, q> = 1, and B and C are second and third derivatives. So
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal
@@ -37,7 +37,7 @@ class Criticality:
     speed, load : float
         [m/s], [N]
     coefficient : float
-        Change of the growth rate by the square of the amplitude a of the leading quantity, Re(c_1)/4 [1/s per its unit squared].
+        Change of the growth rate by the square of the amplitude of the leading state, Re(c_1)/4 [1/s per its unit squared].
     leading : str
         ``yaw_angle``, or another state where the mode has no yaw.
     kind : str
@@ -114,7 +114,7 @@ class NormalForm:
         return float(c_1.real), names[lead], omega
 
 
-def _complex(form: ca.Function, *vectors: np.ndarray) -> np.ndarray:
+def _complex(form: Callable[..., ca.DM], *vectors: np.ndarray) -> np.ndarray:
     """A multilinear form of real vectors at complex ones."""
     total: np.ndarray = np.zeros(len(vectors[0]), complex)
     for parts in product((0, 1), repeat=len(vectors)):

@@ -37,10 +37,14 @@ def multipliers(found: Corrected, events: bool) -> np.ndarray:
             gradient = found.gradients[k] if k < len(found.legs) - 1 else found.gradients[-1] * S
             by_start = by_start - np.outer(by_duration, gradient @ by_start) / (gradient @ by_duration)
         before = by_start
-    values = np.linalg.eigvals(S[:, None] * before).astype(complex)
-    # with events one is 0, as all motions end on the corner; else one is 1, a shift in time
-    values = np.delete(values, np.abs(values - (0.0 if events else 1.0)).argmin())
-    values = values ** (1 + path.half)
+    # all motions end on the last corner, where one multiplier is 0; without corners one is 1, along the orbit
+    taken = found.gradients[-1] if events else S * found.legs[-1].end[:, n]
+    scales = np.sqrt((path.states**2).mean(axis=0))
+    scales = np.where(scales > 0, scales, 1.0)
+    taken = taken * scales if events else taken / scales
+    across = np.linalg.svd(taken[None])[2][1:].T
+    values = np.linalg.eigvals(across.T @ (S[:, None] * before * scales / scales[:, None]) @ across)
+    values = values.astype(complex) ** (1 + path.half)
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 

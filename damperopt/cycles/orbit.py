@@ -21,8 +21,8 @@ PER_INTERVAL = 8
 UNKNOWN_STEPS = 3
 """Of Newton's method for the unknowns between stages."""
 
-NEUTRAL = 1e-6
-"""By which a multiplier must exceed 1 to count as growing: that of the shift in time is 1 to about this."""
+NEUTRAL = 1e-9
+"""By which a multiplier must exceed 1 to count as growing: rounding."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..charts.chart import StabilityChart
+from ..cycles.criticality import Criticality
 from ..literature.arreaza2015 import Row
 from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
@@ -26,6 +27,7 @@ from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from ..tyres.curves import TyreCurves
 from ..tyres.property_file import PropertyFile
+from .cycle_words import show_criticality
 
 __all__ = [
     "disturbance_words",
@@ -133,8 +135,9 @@ def show_analysis(
     marginal: bool = False,
     fail_safe: Sequence[Certificate] = (),
     left_out: Sequence[str] = (),
+    criticality: Sequence[Criticality] = (),
 ) -> None:
-    """Critical speeds, worst point and certificates of a given design."""
+    """Critical speeds and how their limit cycles begin, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
     if design:
         text = ", ".join(" ".join((name, *number_and_unit(value, unit_of_name(name)))) for name, value in design.items())
@@ -148,6 +151,7 @@ def show_analysis(
             direction = "destabilised" if c.destabilising else "stabilised"
             table.add_row(f"{_fixed(c.speed)} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
+        show_criticality(console, criticality)
     else:
         low, high = searched
         console.print(

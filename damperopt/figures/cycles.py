@@ -1,0 +1,68 @@
+"""Branches of limit cycles: amplitude, frequency and the largest multiplier over what is varied."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from ..cycles.orbit import Branch
+from ..quantities.shown import axis_label, scale
+from .style import COLOURS, OTHERS, plain, quantity_words, styled
+
+__all__ = ["cycles"]
+
+MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "D", "loss of symmetry": "^"}
+
+
+def cycles(branches: Sequence[Branch], title: str = "") -> Any:
+    """Amplitude of the yaw angle, frequency, and the largest Floquet multiplier; stable full, unstable dashed.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Of one question, at least one.
+    title : str
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    unit, factor = branches[0].unit, scale(branches[0].unit)[1]
+    degrees = scale("rad")[1]
+    rows = (
+        (axis_label("Amplitude of yaw", "rad"), lambda orbit: degrees * orbit.amplitudes["yaw_angle"]),
+        ("Frequency [Hz]", lambda orbit: orbit.frequency),
+        ("Largest multiplier [1]", lambda orbit: float(np.abs(orbit.multipliers).max())),
+    )
+    colours = (*COLOURS.values(), *OTHERS)
+    with styled():
+        figure, panels = plt.subplots(len(rows), sharex=True, figsize=(8, 7.5))
+        for panel, (label, value) in zip(panels, rows, strict=True):
+            for branch, colour in zip(branches, colours * len(branches), strict=False):
+                points = [(factor * orbit.parameter, value(orbit), orbit.stable) for orbit in branch.orbits]
+                for before, after in zip(_runs(points), [*_runs(points)[1:], []], strict=True):
+                    part = np.array([point[:2] for point in [*before, *after[:1]]])
+                    panel.plot(*part.T, color=colour, ls="-" if before[0][2] else "--", lw=1.4)
+                for orbit in branch.special:
+                    at = factor * orbit.parameter, value(orbit)
+                    panel.plot(*at, MARKS.get(orbit.label, "x"), color=colour, ms=5, label=orbit.label)
+            panel.set_ylabel(label)
+            panel.margins(x=0)
+        panels[0].set_ylim(bottom=0)
+        panels[2].axhline(1, color="#333333", ls=":", lw=1)
+        kinds = dict(zip(*reversed(panels[0].get_legend_handles_labels()), strict=True))
+        if kinds:
+            panels[0].legend(kinds.values(), kinds.keys(), frameon=False, fontsize=8)
+        panels[-1].set_xlabel(axis_label(quantity_words(branches[0].name), unit))
+        figure.align_ylabels(panels)
+        figure.suptitle(plain(title) + ("\n" if title else "") + "stable: full, unstable: dashed", fontsize=10)
+        return figure
+
+
+def _runs(points: Sequence[tuple[float, float, bool]]) -> list[list[tuple[float, float, bool]]]:
+    """Neighbours of one stability."""
+    return [list(run) for _, run in groupby(points, key=lambda point: point[2])]

@@ -225,7 +225,7 @@ class _Fast:
     """A CasADi function of vectors, called without its overhead (about 20 us)."""
 
     def __init__(self, inputs: list[ca.SX], outputs: list[ca.SX]):
-        function = ca.Function("fast", inputs, [ca.densify(ca.SX(e)) for e in outputs])
+        function = ca.Function("fast", inputs, ca.cse([ca.densify(ca.SX(e)) for e in outputs]))
         self._buffer, self._evaluate = function.buffer()
         self._in = [np.zeros(e.numel()) for e in inputs]
         self._out = [np.zeros(e.numel()) for e in outputs]
@@ -329,10 +329,10 @@ class _Run:
                     dense_output=True,
                 )
                 last = leg.t[-1]
-                for moment in time[len(rows) :]:
-                    if moment > last or (moment == last and leg.status == 1):
-                        break
-                    rows.append(self._row(moment, leg.sol(moment)))
+                moments = time[len(rows) :]
+                moments = moments[(moments < last) | ((moments == last) & (leg.status != 1))]
+                if moments.size:
+                    rows += [self._row(*place) for place in zip(moments, leg.sol(moments).T, strict=True)]
                 if leg.status != 1:
                     return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
                 t, x = last, leg.y[:, -1].copy()

@@ -303,12 +303,15 @@ def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.nd
     turns = np.abs(starts) * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds)[:, None]
     resolved = turns <= order
     # what the field resolves comes first, from right to left
-    starts = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
-    resolved = np.sort(~resolved, axis=1)[:, :count] == 0
-    roots, converged = _newton(model, starts)
-    fine = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
-    kept = np.where(fine, roots, starts)
-    return np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1), fine.all(axis=1)
+    found = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
+    fine = (resolved.sum(axis=1) >= count) | (order == ORDERS[-1])  # elsewhere a finer field will tell
+    starts, resolved = found[fine], np.arange(count) < resolved[fine].sum(axis=1)[:, None]
+    roots, converged = _newton(model.taken(fine), starts)
+    met = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
+    kept = np.where(met, roots, starts)
+    found[fine] = np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1)
+    fine[fine] = met.all(axis=1)
+    return found, fine
 
 
 def _newton(model: Frozen, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

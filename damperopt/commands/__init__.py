@@ -3,6 +3,7 @@
 from .analyse import analyse
 from .chart import chart
 from .components import components
+from .gains import gains
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -15,6 +16,7 @@ __all__ = [
     "analyse",
     "chart",
     "components",
+    "gains",
     "init",
     "optimise",
     "report",

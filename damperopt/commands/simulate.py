@@ -49,6 +49,7 @@ def simulate(
     from ..quantities.record import Force, Speed, Time
     from ..results import load_result
     from ..stability.linear import linear_gear
+    from ..study.cavitation import cavitation
     from . import summary
     from .arguments import disturbance_of, quantity
 
@@ -90,6 +91,9 @@ def simulate(
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
     sized = load_result(design).limit_event if design is not None else {}
     summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    force = found.peaks.get("damper_torque" if study.damper.ROTARY else "damper_force", 0.0)
+    if boils := cavitation(study, study.start if values is None else values, force):
+        out.print(f"[yellow]Cavitation[/]: {boils}", soft_wrap=True)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

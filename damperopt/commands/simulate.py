@@ -50,6 +50,7 @@ def simulate(
     from ..results import load_result
     from ..stability.linear import linear_gear
     from ..stability.wavelength import shortest_wavelength
+    from ..study.cavitation import cavitation
     from . import summary
     from .arguments import disturbance_of, quantity
 
@@ -93,6 +94,9 @@ def simulate(
     wave = shortest_wavelength(study, gear, [at_speed], [motion.load])
     summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
     summary.show_contact_line(out, study, wave)
+    force = found.peaks.get("damper_torque" if study.damper.ROTARY else "damper_force", 0.0)
+    if boils := cavitation(study, study.start if values is None else values, force):
+        out.print(f"[yellow]Cavitation[/]: {boils}", soft_wrap=True)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

@@ -48,7 +48,7 @@ class _Magnetorheological(Damper):
     """v_1, at which it adds half of that [m/s]."""
     switching_band: ForceNumber = 50.0
     """F_b over which a law (`control`) switches the current on and off [N]."""
-    switching_smoothing: Annotated[float, Quantity("1", above=0, at_most=0.5)] = 0.05
+    switching_smoothing: Annotated[float, Quantity("1", above=0, at_most=0.5)] = 0.002
     """Width of the rounded corners of that in the smooth version, as a fraction of the band."""
     response_time: Time = 0.02
     """tau, lag of the current and the fluid [s]."""

@@ -179,8 +179,8 @@ def _best(A: np.ndarray, b: np.ndarray, Q: np.ndarray, R: float, C: np.ndarray, 
     cost = _cost(A, b, Q, R, k @ C)
     if not np.isfinite(cost):
         raise ConfigError(
-            f"measured: found {len(C)} states from which no gains were found that keep the gear stable at {speed:g} m/s; "
-            f"allowed: more of them, or all"
+            f"measured: found {len(C)} of {len(A)} states, from which no gains were found that keep it stable at "
+            f"{speed:g} m/s; allowed: more of them, or all"
         )
     for _ in range(STEPS):
         closed = A - np.outer(b, k @ C)

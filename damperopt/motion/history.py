@@ -49,11 +49,15 @@ class Frozen:
     ----------
     time : ndarray
         (m,) [s]
+    speed, load : ndarray
+        (m,) [m/s], [N].
     abscissa : ndarray
         (m,) largest real part of its eigenvalues [1/s].
     """
 
     time: np.ndarray
+    speed: np.ndarray
+    load: np.ndarray
     abscissa: np.ndarray
 
     def beyond(self, margin: float) -> list[tuple[float, float]]:
@@ -213,8 +217,9 @@ def frozen_along(study: Study, design: Mapping[str, float] | None, history: Hist
     course = Course.of(history, study, tuple(state.name for state in model.states))
     rows = course.time[:: max(1, course.time.size // FROZEN_TIMES)]
     times = np.union1d(np.linspace(course.time[0], course.time[-1], FROZEN_TIMES), rows)
+    V, F = course.at(times)
     if not course.own_stroke:
-        return Frozen(times, model.at(values).abscissa(*course.at(times)))
+        return Frozen(times, V, F, model.at(values).abscissa(V, F))
     dae, _ = dae_along(study, Linear(), own_stroke=True)
     at = [np.interp(times, course.time, row) for row in course.values]
     still = np.zeros((times.size, 7))
@@ -222,4 +227,4 @@ def frozen_along(study: Study, design: Mapping[str, float] | None, history: Hist
     design_columns = np.tile([[values[name]] for name in model.design_names], (1, times.size))
     matrices = linearise(dae)(design_columns, np.zeros((1, times.size)), np.zeros((1, times.size)), numbers).full()
     n = len(dae.states)
-    return Frozen(times, spectral_abscissa(matrices.reshape(n, times.size, n).transpose(1, 0, 2)))
+    return Frozen(times, V, F, spectral_abscissa(matrices.reshape(n, times.size, n).transpose(1, 0, 2)))

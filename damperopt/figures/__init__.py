@@ -18,6 +18,7 @@ _HOME = {
     "styled": "style",
     "sweep_figure": "sweep",
     "tornado": "design",
+    "roll": "motion",
     "trajectory": "motion",
     "tyre_over_load": "tyre",
     "tyre_over_slip": "tyre",

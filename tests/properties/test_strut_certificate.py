@@ -47,7 +47,7 @@ def abscissa(V, F_z, p, contact, torsion=TORSION):
     )
 
 
-@pytest.mark.parametrize(("contact", "part"), [("memory", 0.5), ("leading_point", 0.8)])
+@pytest.mark.parametrize(("contact", "part"), [("memory", 0.3), ("leading_point", 0.6)])
 def test_a_range_of_loads_in_slices(contact, part):
     """The worst of a scan decides: a margin below it is proved, one a little above refuted, where it is missed."""
     p = memory_twin.gear(c_psi=4000.0)

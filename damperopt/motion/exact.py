@@ -29,7 +29,7 @@ from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
 
-__all__ = ["ExactSimulator", "simulate_exactly"]
+__all__ = ["ExactSimulator", "grip_of", "one_friction", "simulate_exactly"]
 
 MAX_EVENTS = 100_000
 
@@ -115,7 +115,7 @@ class ExactSimulator:
         self.study, self.model = study, LinearModel(study) if model is None else model
         corners = Switched()
         dae = build(symbolic(study), corners)
-        dae, friction = _one_friction(dae, corners)
+        dae, friction = one_friction(dae, corners)
         self.corners, self.sticks = len(corners.switches), friction is not None
         self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
         modes = [switch.mode for switch in corners.switches.values()]
@@ -128,7 +128,7 @@ class ExactSimulator:
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
-        motion = [dae.ode, step, arguments, _grip(dae, friction)]
+        motion = [dae.ode, step, arguments, grip_of(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, dae.data)
         self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
@@ -191,12 +191,41 @@ class ExactSimulator:
         forcing = speed / self.study.gear.wheel_radius / (2 * math.pi) if disturbance.unbalance_moment else 0.0
         return Trajectory(speed, load, time, states, named, status, message, "exact", forcing, self.units)
 
+    def stretch(
+        self,
+        speed: float,
+        load: float,
+        disturbance: Disturbance | Mapping[str, Any],
+        time: np.ndarray,
+        start: np.ndarray | None = None,
+        tolerance: float = 1e-8,
+    ) -> np.ndarray:
+        """States, hidden ones too, and outputs by `names` (k, q) at `time` (m,) [s]; k < m where the motion cannot go on.
+
+        Parameters
+        ----------
+        speed, load : float
+            [m/s], [N]
+        disturbance : Disturbance or mapping
+        time : ndarray
+            Ascending from 0.
+        start : ndarray or None
+            (n,) states at the start, in the place of those of the disturbance.
+        tolerance : float
+            Relative.
+        """
+        disturbance = posed(self.study, self.state_names, speed, load, disturbance, float(time[-1]))
+        run = _Run(self, speed, load, disturbance, tolerance)
+        if start is not None:
+            run.begin_at(start)
+        return np.array(run.rows_at(time)[0])
+
 
 FRICTIONS = ("friction", "damper friction")
 """Corners at which the motion sticks: of the strut, and of a damper."""
 
 
-def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
+def one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
     """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
     found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
     found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
@@ -209,7 +238,7 @@ def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
     return dae, found[0] if found else None
 
 
-def _grip(dae: DAE, friction: Switch | None) -> Any:
+def grip_of(dae: DAE, friction: Switch | None) -> Any:
     """Rate at which the friction rubs; its derivative without friction; what full friction takes off that; d rate/dx."""
     if friction is None:
         return ca.SX.zeros(3 + dae.x.numel())
@@ -264,6 +293,12 @@ class _Run:
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / fastest_rate(model.gear.visible(speed, load)[0]) / steps
 
+    def begin_at(self, x: np.ndarray) -> None:
+        """Start at these states, wherever the chain stands."""
+        self._x0 = x.copy()
+        arguments = self._model.motion(x, self._z, self._modes, self._point)[2]
+        self._modes[:-1] = np.where(arguments < 0, -1.0, 1.0)
+
     def _relaxed(self, given: np.ndarray) -> np.ndarray:
         """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""
         x = given
@@ -274,7 +309,7 @@ class _Run:
         return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
-        """ode, Newton step, arguments of the corners, and `_grip`; with the linkage closed."""
+        """ode, Newton step, arguments of the corners, and `grip_of`; with the linkage closed."""
         self._point[self._external] = self._torque
         if self._unbalance:
             self._point[self._external] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -142,7 +141,7 @@ class Jointed:
         return values.full().ravel(), gradients.full(), slopes.full().ravel()
 
 
-def _event_function(dae: DAE, modes: ca.SX, values: ca.SX) -> Callable[..., tuple[ca.DM, ca.DM, ca.DM]]:
+def _event_function(dae: DAE, modes: ca.SX, values: ca.SX) -> ca.Function:
     """(x, z, parameters and modes, direction) -> values, their total gradients over x and slopes along the direction."""
     parameters = ca.vertcat(dae.design, dae.speed, dae.load, dae.data)
     direction = ca.SX.sym("direction", parameters.numel())

@@ -7,19 +7,28 @@ from itertools import groupby
 
 from rich.console import Console
 from rich.markup import escape
+from rich.table import Table
 
 from ..cycles.branches import Question, worded
 from ..cycles.criticality import Criticality
+from ..cycles.edge import Kicker, Threshold
 from ..cycles.orbit import Branch, Orbit
 from ..quantities.shown import shown
 
-__all__ = ["show_criticality", "show_cycles"]
+__all__ = ["show_criticality", "show_cycles", "show_threshold"]
+
+FATES = {
+    "dies": "dies",
+    "grows": "grows",
+    "stays": "neither dies nor grows",
+    "leaves": "leaves the range of the model",
+}
 
 EXACT = 1e-6
 """Relative error of amplitude and period below which nothing is said of it."""
 
 
-def show_cycles(console: Console, question: Question, branches: Sequence[Branch]) -> None:
+def show_cycles(console: Console, question: Question, branches: Sequence[Branch], begin: str = "hopf") -> None:
     """Branches in words, the answer first."""
     axis, held = question.axis, []
     if axis.name != "speed":
@@ -27,6 +36,14 @@ def show_cycles(console: Console, question: Question, branches: Sequence[Branch]
     if axis.name != "vertical_load":
         held.append(worded(question.load, "N"))
     searched = f"{axis.name} {worded(axis.low, axis.unit)} to {worded(axis.high, axis.unit)}" + "".join(f", {h}" for h in held)
+    if not branches and begin == "simulation":
+        console.print(f"\n[bold]no limit cycle found[/]: {escape(searched)}", soft_wrap=True)
+        console.print(
+            "Motions after some releases at both ends and in the middle of the range all die, or leave the model; this is a "
+            "search, no proof that none exists.",
+            soft_wrap=True,
+        )
+        return
     if not branches:
         console.print(f"\n[bold]no Hopf point[/]: {escape(searched)}", soft_wrap=True)
         console.print(
@@ -97,3 +114,25 @@ def show_criticality(console: Console, found: Sequence[Criticality]) -> None:
             "degenerate": "neither super- nor subcritical to third order: the laws have no curvature that says it",
         }[c.kind]
         console.print(f"Hopf at {worded(c.speed, 'm/s')}, {worded(c.load, 'N')}: {words}.", soft_wrap=True)
+
+
+def show_threshold(console: Console, kicker: Kicker, found: Sequence[Threshold]) -> None:
+    """The largest disturbance that dies, over speed, and what the next larger one does."""
+    what = f"{kicker.kind} of {kicker.name.replace('_', ' ')}"
+    both = [t for t in found if t.dies is not None and t.not_dies is not None]
+    if both:
+        least = min(both, key=lambda t: t.dies or 0.0)
+        size = " ".join(shown(least.dies or 0.0, kicker.unit))
+        console.print(f"\n[bold]Least threshold[/]: a {what} of {size} dies at {worded(least.speed, 'm/s')}", soft_wrap=True)
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for column in ("speed", "dies", "does not die", "which then"):
+        table.add_column(column)
+    for t in found:
+        sizes = ["none tried" if v is None else " ".join(shown(v, kicker.unit)) for v in (t.dies, t.not_dies)]
+        table.add_row(worded(t.speed, "m/s"), *sizes, FATES[t.fate] if t.not_dies is not None else "")
+    console.print(table)
+    console.print(
+        "Exact motions, corners as events; found by bisection: between the sizes that were tried there may be others.",
+        soft_wrap=True,
+        style="dim",
+    )

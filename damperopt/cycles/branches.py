@@ -20,7 +20,7 @@ from .hopf import HopfPoint, first_orbit, hopf_points, is_odd
 from .newton import NoOrbit, corrected, phase
 from .orbit import Branch, Orbit
 
-__all__ = ["Question", "from_hopf_points", "refined", "worded"]
+__all__ = ["Question", "end_in_words", "error_of", "from_hopf_points", "refined", "worded"]
 
 SMALL = 0.02
 """Yaw angle [rad] below which differences of orbits do not count along a branch from rest."""
@@ -161,15 +161,16 @@ def _from(question: Question, flow: Flow, point: HopfPoint, report: Callable[[Or
         first = corrected(begin, [phase(begin, metric)], along.direction, metric, growth)
     except NoOrbit:
         raise ConfigError(f"no limit cycle is found beside the Hopf point at {worded(point.parameter, axis.unit)}") from None
-    orbits, end = follow(along, first, growth, report)
+    orbits, end, _ = follow(along, first, growth, report)
     orbits = [along.orbit(first), *orbits]
     words = f"Hopf point at {worded(point.parameter, axis.unit)}, {point.frequency / (2 * np.pi):.4g} Hz"
     return Branch(
-        axis.name, axis.unit, tuple(orbits), words, _end(orbits, end, axis.unit), "hopf", error_of(along, orbits)
+        axis.name, axis.unit, tuple(orbits), words, end_in_words(orbits, end, axis.unit), "hopf", error_of(along, orbits)
     ), end
 
 
-def _end(orbits: list[Orbit], end: str, unit: str) -> str:
+def end_in_words(orbits: list[Orbit], end: str, unit: str) -> str:
+    """How and where a branch ends."""
     return f"{ENDS.get(end, end)}, {worded(orbits[-1].parameter, unit)}"
 
 

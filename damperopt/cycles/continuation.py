@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -105,8 +105,8 @@ class Along:
 
 def follow(
     along: Along, first: Corrected, ahead: Tangent, report: Callable[[Orbit], None] = lambda orbit: None
-) -> tuple[list[Orbit], str]:
-    """Orbits from a first one on in a direction, and how the branch ends.
+) -> tuple[list[Orbit], str, Corrected]:
+    """Orbits from a first one on in a direction, how the branch ends, and the last of them that was a step.
 
     Parameters
     ----------
@@ -124,53 +124,66 @@ def follow(
         at an end of the range, ``changed`` where the legs change.
     """
     orbits: list[Orbit] = []
-    walk = _walk(along, first, ahead)
-    end = "most"
-    while len(orbits) < MOST:
-        try:
-            orbit = next(walk)
-        except StopIteration as stopped:
-            end = stopped.value
-            break
+    walk = _Walk(along, first, ahead)
+    for orbit in walk.orbits():
         report(orbit)
         orbits.append(orbit)
-    return orbits, end
+        if len(orbits) >= MOST:
+            break
+    return orbits, walk.end, walk.here
 
 
-def _walk(along: Along, here: Corrected, ahead: Tangent) -> Generator[Orbit, None, str]:
-    step, last = FIRST, along.orbit(here)
-    while True:
+class _Walk:
+    """Step after step along a branch; `here` is the last orbit that a step led to, `end` why there is no next one."""
+
+    def __init__(self, along: Along, first: Corrected, ahead: Tangent):
+        self._along, self.here, self._ahead = along, first, ahead
+        self.end = "most"
+
+    def orbits(self) -> Iterator[Orbit]:
+        """After the first."""
+        along, step, last = self._along, FIRST, self._along.orbit(self.here)
+        while True:
+            branch, (there, step) = self._step(step)
+            if there is None:
+                self.end = "lost" if along.changed is None else "changed"
+                return
+            if float(np.sum(there.path.states * self.here.path.states / branch.metric.states**2)) < 0:
+                self.end = "rest"
+                return
+            value = along.value(there.path)
+            if not along.low <= value <= along.high:
+                self.end = "range"
+                yield from self._at_limit(branch, along.low if value < along.low else along.high)
+                return
+            orbit = along.orbit(there)
+            yield from branch.special(step, there, last, orbit)
+            self.here, self._ahead, last = there, branch.direction, orbit
+            yield orbit
+            if orbit.beyond:
+                self.end = orbit.beyond
+                return
+            step = min(LARGEST, step * (2 if there.iterations <= FEW else 1 if there.iterations <= FEW + 2 else 0.5))
+
+    def _step(self, step: float) -> tuple[_Step, tuple[Corrected | None, float]]:
+        """The tangent here, and the orbit a step along it, shortened until there is one."""
+        along, here = self._along, self.here
         metric = along.metric(here.path)
-        try:
-            direction = tangent(here, along.conditions(here.path, metric), along.direction, metric, ahead)
-        except np.linalg.LinAlgError:
-            return "singular"
-        if direction.along(ahead, metric) < 0:
+        direction = tangent(here, along.conditions(here.path, metric), along.direction, metric, self._ahead)
+        if direction.along(self._ahead, metric) < 0:
             direction = direction.times(-1)
         branch = _Step(along, here, direction, metric)
-        there = None
-        while there is None:
-            try:
-                there = branch.at(step)
-            except NoOrbit:
-                step /= 4
-                if step < LEAST:
-                    return "lost" if along.changed is None else "changed"
-        if float(np.sum(there.path.states * here.path.states / metric.states**2)) < 0:
-            return "rest"
-        value = along.value(there.path)
-        if not along.low <= value <= along.high:
-            limit = along.low if value < along.low else along.high
+        while step >= LEAST:
             with suppress(NoOrbit):
-                yield along.orbit(along.held(branch.near(limit), limit))
-            return "range"
-        orbit = along.orbit(there)
-        yield from branch.special(step, there, last, orbit)
-        yield orbit
-        if orbit.beyond:
-            return orbit.beyond
-        step = min(LARGEST, step * (2 if there.iterations <= FEW else 1 if there.iterations <= FEW + 2 else 0.5))
-        here, ahead, last = there, direction, orbit
+                return branch, (branch.at(step), step)
+            step /= 4
+        return branch, (None, step)
+
+    def _at_limit(self, branch: _Step, limit: float) -> Iterator[Orbit]:
+        """The orbit at an end of the range."""
+        if self._along.value(self.here.path) != limit:
+            with suppress(NoOrbit):
+                yield self._along.orbit(self._along.held(branch.near(limit), limit))
 
 
 @dataclass(frozen=True)

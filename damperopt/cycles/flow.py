@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -47,6 +48,8 @@ class Flow:
     study : Study
     dae : DAE or None
         Its equations; None: joints closed (`Closed`).
+    modes : casadi.SX or None
+        Symbols of the corners' modes in them; `with_modes` gives them values.
 
     Attributes
     ----------
@@ -56,7 +59,7 @@ class Flow:
         (n,) +-1: the mirrored motion is mirror * x.
     """
 
-    def __init__(self, study: Study, dae: DAE | None = None):
+    def __init__(self, study: Study, dae: DAE | None = None, modes: ca.SX | None = None):
         dae = build(symbolic(study), Closed()) if dae is None else dae
         self.study, self.states, self.units = study, dae.states, dae.units
         self.state_names, self.n, self.m = dae.state_names, dae.x.numel(), dae.z.numel()
@@ -64,7 +67,9 @@ class Flow:
         self.design_names = dae.design_names
         self.mirror = np.array([1.0 if state.even else -1.0 for state in dae.states])
         self._data = np.array(data_values(study))
-        parameters = ca.vertcat(dae.design, dae.speed, dae.load, dae.data)
+        self._parameters = dae.design.numel() + 2 + dae.data.numel()
+        parameters = ca.vertcat(dae.design, dae.speed, dae.load, dae.data, ca.SX(0, 1) if modes is None else modes)
+        self.modes = np.ones(parameters.numel() - self._parameters)
         f, g = (ca.substitute(e, dae.yaw_torque, 0) for e in (dae.ode, dae.alg))
         self._slopes = _Stacked(_slopes(dae.x, dae.z, parameters, f, g), 2)
         outputs = {name: ca.substitute(ca.SX(value), dae.yaw_torque, 0) for name, value in dae.outputs.items()}
@@ -73,12 +78,20 @@ class Flow:
         self._outputs = _Stacked(ca.Function("outputs", [dae.x, dae.z, parameters], [shown]), 1)
         guess = ca.densify(ca.substitute(dae.first_guess(), dae.yaw_torque, 0))
         self._guess = _Stacked(ca.Function("guess", [dae.x, parameters], [guess]), 1)
-        self._parameters = parameters.numel()
 
     @property
     def mirrored(self) -> Flow:
         """Equations of the mirrored motion: the same, where no mode of a joint is held."""
         return self
+
+    def with_modes(self, modes: np.ndarray) -> Flow:
+        """The same equations with values (s,) of the modes."""
+        other = copy.copy(self)
+        other.modes = modes
+        return other
+
+    def _all(self, parameters: np.ndarray) -> np.ndarray:
+        return np.concatenate([parameters, self.modes])
 
     def index(self, name: str) -> int:
         """Position of a state."""
@@ -97,17 +110,17 @@ class Flow:
     def slopes(self, x: np.ndarray, z: np.ndarray, parameters: np.ndarray, direction: np.ndarray) -> Slopes:
         """Rates and slopes at k points: x (k, n), z (k, m)."""
         k, n, m = len(x), self.n, self.m
-        f, A, b, step, z_x, z_p = self._slopes(k, [x, z], [parameters, direction])
+        f, A, b, step, z_x, z_p = self._slopes(k, [x, z], [self._all(parameters), np.concatenate([direction, 0 * self.modes])])
         A, z_x = A.reshape(k, n, n).transpose(0, 2, 1), z_x.reshape(k, n, m).transpose(0, 2, 1)
         return Slopes(f.reshape(k, n), A, b.reshape(k, n), (step.reshape(k, m), z_x, z_p.reshape(k, m)))
 
     def unknowns(self, x: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """First guess of z (k, m) at x (k, n)."""
-        return self._guess(len(x), [x], [parameters])[0].reshape(len(x), self.m)
+        return self._guess(len(x), [x], [self._all(parameters)])[0].reshape(len(x), self.m)
 
     def outputs(self, x: np.ndarray, z: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """(k, q) states and outputs by `output_names`."""
-        return self._outputs(len(x), [x, z], [parameters])[0].reshape(len(x), -1)
+        return self._outputs(len(x), [x, z], [self._all(parameters)])[0].reshape(len(x), -1)
 
     def state_matrix(self, parameters: np.ndarray) -> np.ndarray:
         """(n, n) at rest."""

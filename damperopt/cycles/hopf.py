@@ -50,7 +50,8 @@ def is_odd(flow: Flow, parameters: np.ndarray) -> bool:
     """Whether a motion and its mirror image are both motions of the model, to rounding."""
     x = np.random.default_rng(0).uniform(-1e-2, 1e-2, (16, flow.n))
     none = np.zeros_like(parameters)
-    rates = [flow.slopes(y, flow.unknowns(y, parameters), parameters, none).rates for y in (x, x * flow.mirror)]
+    pairs = (flow, x), (flow.mirrored, x * flow.mirror)
+    rates = [side.slopes(y, side.unknowns(y, parameters), parameters, none).rates for side, y in pairs]
     sizes = np.abs(rates[0]).max(axis=0)
     return bool((np.abs(rates[1] - flow.mirror * rates[0]) <= ODD * sizes).all())
 

@@ -122,7 +122,10 @@ def tangent(
     _, system, right, _ = _system(found.path, conditions, direction, metric, along)
     right = np.zeros_like(right)
     right[-1] = 1.0
-    step = _unfolded(found.legs, np.linalg.solve(system, right), constant=0.0)
+    try:
+        step = _unfolded(found.legs, np.linalg.solve(system, right), constant=0.0)
+    except np.linalg.LinAlgError:
+        raise NoOrbit from None
     return step.times(1 / np.sqrt(step.along(step, metric)))
 
 

@@ -17,6 +17,7 @@ _HOME = {
     "save_each": "style",
     "styled": "style",
     "sweep_figure": "sweep",
+    "threshold": "cycles",
     "tornado": "design",
     "roll": "motion",
     "trajectory": "motion",

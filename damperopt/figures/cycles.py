@@ -9,11 +9,12 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..cycles.edge import Threshold
 from ..cycles.orbit import Branch
 from ..quantities.shown import axis_label, scale
 from .style import COLOURS, OTHERS, plain, quantity_words, styled
 
-__all__ = ["cycles"]
+__all__ = ["cycles", "threshold"]
 
 MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "D", "loss of symmetry": "^"}
 
@@ -66,3 +67,37 @@ def cycles(branches: Sequence[Branch], title: str = "") -> Any:
 def _runs(points: Sequence[tuple[float, float, bool]]) -> list[list[tuple[float, float, bool]]]:
     """Neighbours of one stability."""
     return [list(run) for _, run in groupby(points, key=lambda point: point[2])]
+
+
+def threshold(found: Sequence[Threshold], kind: str, unit: str, title: str = "") -> Any:
+    """Largest disturbance that dies over speed, with the least that was seen not to.
+
+    Parameters
+    ----------
+    found : sequence of Threshold
+    kind : str
+        ``release`` or ``kick``.
+    unit : str
+        SI unit of the disturbance.
+    title : str
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    factor = scale(unit)[1]
+    with styled():
+        figure, axis = plt.subplots(figsize=(8, 4.5))
+        speeds = [t.speed for t in found]
+        for values, label, colour in (
+            ([t.dies for t in found], "dies", COLOURS["torsional"]),
+            ([t.not_dies for t in found], "does not die", COLOURS["lateral"]),
+        ):
+            axis.plot(
+                speeds, [np.nan if v is None else factor * v for v in values], "o-", ms=3, lw=1.2, color=colour, label=label
+            )
+        axis.set(xlabel="Speed [m/s]", ylabel=axis_label(f"{kind.capitalize()} of yaw", unit))
+        axis.set_ylim(bottom=0)
+        axis.legend(frameon=False)
+        axis.set_title(plain(title), fontsize=10)
+        return figure

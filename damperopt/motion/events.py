@@ -120,6 +120,12 @@ class Run:
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / rate / steps
 
+    def begin_at(self, x: np.ndarray) -> None:
+        """Start at these states, wherever the chain stands."""
+        self._x0 = x.copy()
+        arguments = self._model.motion(x, self._z, self._modes, self._point)[2]
+        self._modes[:-1] = np.where(arguments < 0, -1.0, 1.0)
+
     def _relaxed(self, given: np.ndarray) -> np.ndarray:
         """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""
         x = given
@@ -130,7 +136,7 @@ class Run:
         return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
-        """ode, Newton step, arguments of the corners, and `_grip`; with the linkage closed."""
+        """ode, Newton step, arguments of the corners, and `grip_of`; with the linkage closed."""
         self._point = self._drive.point(t)
         if not self._z.size:
             return self._model.motion(x, self._z, self._modes, self._point)

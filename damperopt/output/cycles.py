@@ -5,16 +5,18 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..cycles.criticality import Criticality
+from ..cycles.edge import Kicker, Threshold
 from ..cycles.orbit import Branch, Orbit
 from ..stability.critical import CriticalSpeed
 
-__all__ = ["branch_record", "write_branches", "write_critical", "write_cycle"]
+__all__ = ["branch_record", "write_branches", "write_critical", "write_cycle", "write_threshold"]
 
 
 def write_branches(folder: Path, branches: Sequence[Branch], question: Mapping[str, Any]) -> None:
@@ -95,3 +97,16 @@ def write_critical(path: Path, critical: Sequence[CriticalSpeed], criticality: S
             found = begins.get((c.speed, c.load)) if c.kind == "hopf" and not c.touching else None
             more = [found.kind, f"{found.coefficient:.9g}", found.leading] if found else ["", "", ""]
             writer.writerow([f"{c.speed:.12g}", f"{c.load:.12g}", c.kind, f"{c.frequency:.9g}", *facts, *more])
+
+
+def write_threshold(folder: Path, found: Sequence[Threshold], kicker: Kicker, question: Mapping[str, Any]) -> None:
+    """Largest disturbances that die over speed, as ``threshold.csv`` and ``threshold.json``; SI."""
+    rows = [asdict(t) for t in found]
+    record = {"question": dict(question), "disturbance": kicker.kind, "of": kicker.name, "unit": kicker.unit, "points": rows}
+    (folder / "threshold.json").write_text(json.dumps(record, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    with open(folder / "threshold.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["speed [m/s]", "load [N]", f"dies [{kicker.unit}]", f"does not die [{kicker.unit}]", "which then"])
+        for t in found:
+            sizes = ["" if value is None else f"{value:.9g}" for value in (t.dies, t.not_dies)]
+            writer.writerow([f"{t.speed:.12g}", f"{t.load:.12g}", *sizes, t.fate])

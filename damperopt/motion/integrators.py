@@ -82,6 +82,8 @@ class Integrator:
         Integrate dx/d ln(design) too.
     compiled : bool or None
         Translate the model with gcc; None: where gcc is found and the engine profits.
+    clock : SX or None
+        Symbol among the data that is the time, from `start` of a call on [s].
 
     Raises
     ------
@@ -98,6 +100,7 @@ class Integrator:
         tolerance: float = 1e-8,
         sensitivities: bool = False,
         compiled: bool | None = None,
+        clock: ca.SX | None = None,
     ):
         self.steps, self.engine = steps, engine
         model = dae if engine == "idas" else eliminate(dae)
@@ -112,6 +115,8 @@ class Integrator:
             model.design, model.speed, model.load, duration, start, torque, unbalance, wheel_rate, model.data
         )
         x, z, ode, alg = _with_sensitivities(model) if self._d else (model.x, model.z, model.ode, model.alg)
+        if clock is not None:
+            ode, alg = (ca.substitute(e, clock, start + duration * time) for e in (ode, alg))
         problem = {"x": x, "p": parameters, "t": time}
         problem["ode"] = ca.cse(duration * ca.substitute(ode, model.yaw_torque, external))
         if self._m:

@@ -30,6 +30,7 @@ _HOME = {
     "components": "study.components",
     "critical_speeds": "stability.critical",
     "filled_map": "charts.maps",
+    "gain_schedule": "stability.gain_schedule",
     "joint_boundary": "charts.explicit",
     "json_schema": "study.config",
     "linear_gear": "stability.linear",

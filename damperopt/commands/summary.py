@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..charts.chart import StabilityChart
+from ..cycles.criticality import Criticality
 from ..literature.arreaza2015 import Row
 from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
@@ -27,6 +28,7 @@ from ..study.study import Study
 from ..tyres.curves import TyreCurves
 from ..tyres.path_response import PathResponse
 from ..tyres.property_file import PropertyFile
+from .cycle_words import show_criticality
 
 __all__ = [
     "disturbance_words",
@@ -132,9 +134,11 @@ def show_analysis(
     searched: tuple[float, float],
     wave: Wavelength | None,
     marginal: bool = False,
+    fail_safe: Sequence[Certificate] = (),
     left_out: Sequence[str] = (),
+    criticality: Sequence[Criticality] = (),
 ) -> None:
-    """Critical speeds, worst point and certificates of a given design."""
+    """Critical speeds and how their limit cycles begin, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
     if design:
         text = ", ".join(" ".join((name, *number_and_unit(value, unit_of_name(name)))) for name, value in design.items())
@@ -148,6 +152,7 @@ def show_analysis(
             direction = "destabilised" if c.destabilising else "stabilised"
             table.add_row(f"{_fixed(c.speed)} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
+        show_criticality(console, criticality)
     else:
         low, high = searched
         console.print(
@@ -157,8 +162,9 @@ def show_analysis(
         )
     console.print(worst_words(worst, certificates[0]))
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
-    for certificate in certificates:
+    for i, certificate in enumerate((*certificates, *fail_safe)):
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
+        goal += ", actuator off" if i >= len(certificates) else ""
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"

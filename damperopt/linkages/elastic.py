@@ -159,7 +159,7 @@ def in_series(stiffnesses: Sequence[Expr]) -> Expr:
     return 1 / sum(1 / k for k in stiffnesses)
 
 
-def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0, torsion: Expr = None) -> Linkage:
     """The linkage of a study with the compliance of its parts.
 
     Parameters
@@ -170,6 +170,8 @@ def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) ->
         Design variables by name [SI].
     stroke : Expr
         Of the shock strut [m].
+    torsion : Expr or None
+        Of piston and cylinder at this stroke [N m/rad], in the place of the study's; beside a rotary damper.
 
     Returns
     -------
@@ -178,9 +180,11 @@ def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) ->
     damper = study.damper
     link = damper.linkage(design, study.material.youngs_modulus, stroke)
     if damper.ROTARY:
-        return replace(link, series=damper.series(design))
+        stiffness = link.stiffness if torsion is None else torsion
+        return replace(link, stiffness=stiffness, series=damper.series(design))
     parts = [part for part in damper.elastic(design, study, stroke) if damper.compliance.is_sized(part.part)]
     given, own = damper.given_compliance(), damper.series(design)
+    given = given if torsion is None else {**given, "torsion": torsion}
     for name, value in given.items():
         if name == "torsion":
             parts.append(Compliant(name, value / link.reach**2, in_front=True))

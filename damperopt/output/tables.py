@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from ..study.disturbances import Disturbance
 from ..tyres.curves import TyreCurves
 from ..tyres.path_response import RESPONSES, PathResponse
 
+if TYPE_CHECKING:
+    from ..motion.roll import Roll
+
 __all__ = [
     "write_chart",
     "write_chart_json",
@@ -26,6 +30,7 @@ __all__ = [
     "write_motion",
     "write_ranking",
     "write_response",
+    "write_roll",
     "write_trajectory",
     "write_tyre",
 ]
@@ -90,6 +95,23 @@ def write_motion(
         "message": trajectory.message,
         "duration": float(trajectory.time[-1]),
         **asdict(motion),
+    }
+    path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_roll(
+    path: Path, trajectory: Trajectory, found: Roll, disturbance: Disturbance | None, design: Mapping[str, float]
+) -> None:
+    """What a motion along a history shows as JSON, with the question that it answers."""
+    record = {
+        "along": trajectory.along,
+        "disturbance": None if disturbance is None else disturbance.model_dump(exclude_none=True),
+        "design": dict(design),
+        "engine": trajectory.engine,
+        "status": trajectory.status,
+        "message": trajectory.message,
+        "duration": float(trajectory.time[-1] - trajectory.time[0]),
+        **asdict(found),
     }
     path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 

@@ -208,10 +208,10 @@ class DelayGear(LinearGear):
         """Of the structure and the foremost contact points: as many as there are roots when the delay vanishes."""
         return self.named
 
-    def modes(self, speeds: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-        """The rightmost eigenvalues (m, k) [1/s], some more than principal states, and how each state takes part, (m, n, k)."""
+    def modes(self, speeds: Any, loads: Any, spare: int = SPARE) -> tuple[np.ndarray, np.ndarray]:
+        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and their states' parts (m, n, k)."""
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
-        values = self.roots(V, F_z, len(self.named) + SPARE)
+        values = self.roots(V, F_z, len(self.named) + spare)
         A, _ = self.frozen(V, F_z).at(values)
         n = A.shape[-1]
         near = (values + 1e-10 * (1 + np.abs(values)))[..., None, None] * np.eye(n) - A
@@ -303,15 +303,18 @@ def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.nd
     starts = np.linalg.eigvals(model.fields(order)).astype(complex)
     resolved = np.abs(starts) * _delay(model)[:, None] <= order
     # what the field resolves comes first, from right to left
-    starts = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
-    resolved = np.sort(~resolved, axis=1)[:, :count] == 0
+    found = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
+    sure = (resolved.sum(axis=1) >= count) | (order == ORDERS[-1])  # elsewhere a finer field will tell
+    starts, resolved, model = found[sure], np.arange(count) < resolved[sure].sum(axis=1)[:, None], model.taken(sure)
     roots, converged = _newton(model, starts)
-    fine = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
-    kept, sure = np.where(fine, roots, starts), fine.all(axis=1)
+    met = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
+    kept, all_met = np.where(met, roots, starts), met.all(axis=1)
     if order >= MOST:
-        beyond, found = _beyond(model, order, kept)
-        kept, sure = np.column_stack([kept, beyond]), sure & found
-    return np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1)[:, :count], sure
+        beyond, none_missed = _beyond(model, order, kept)
+        kept, all_met = np.column_stack([kept, beyond]), all_met & none_missed
+    found[sure] = np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1)[:, :count]
+    sure[sure] = all_met
+    return found, sure
 
 
 def _beyond(model: Frozen, order: int, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

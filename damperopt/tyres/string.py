@@ -10,8 +10,9 @@ c_M = C_Ma/(2 a (sigma (a + sigma) + a^2/3)); with a carcass stiffness both are 
 
 Wheel frame, nonlinear: points of the ground move backwards at V cos(theta) along the wheel plane and at V sin(theta) across it,
 v_t = V (sin(theta) + cos(theta) v_x) - eta' - x cos(theta) theta'. With the slope v_x = -y/sigma of the string before the
-footprint this is the equation of the leading point, thesis (2-14). Source of the linear line: von Schlippe & Dietrich (1941);
-Takacs, Orosz & Stepan (2009).
+footprint this is the equation of the leading point, thesis (2-14). As the load changes, front and rear move against the wheel
+at a' and -a': at a fixed x/a the slope is met at V cos(theta) + x a'/a. Source of the linear line: von Schlippe &
+Dietrich (1941); Takacs, Orosz & Stepan (2009).
 """
 
 from __future__ import annotations
@@ -181,14 +182,16 @@ class StringLine(ContactLine):
         y, *c = x
         _, _, sigma, a = linear
         V, theta, theta_t, eta_t = wheel.speed, wheel.swivel, wheel.swivel_rate, wheel.lateral_rate
-        U = V * cos(theta)
-        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - U / sigma * y
+        U, a_t = V * cos(theta), linear.half_contact_length_rate
+        front = (U + a_t) / sigma * y
+        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - front
         c = [*c, -sum(c)]  # u(a) = 0
         rates = []
         for j in range(self.order):
             slope = (2 * j + 1) * sum(c[j + 1 :: 2])  # of u over x/a, its part in P_j
-            rates.append(U / a * slope)
-        rates[0] = rates[0] + U / sigma * y + a * cos(theta) * theta_t
+            stretch = j * c[j] + (2 * j + 1) * sum(c[j + 2 :: 2])  # of x/a times this slope
+            rates.append(U / a * slope + a_t / a * stretch)
+        rates[0] = rates[0] + front + a * cos(theta) * theta_t
         if self.order > 1:
             rates[1] = rates[1] - a * cos(theta) * theta_t
 

@@ -40,6 +40,9 @@ CLOSED = 1e-9
 WIDTHS = (1e-4, 1e-6)
 """Parts of the widths of rounded corners, at which the smooth model is compared with the exact one."""
 
+NESTED = 2
+"""Corners whose argument has the modes of others, one behind the other, at most."""
+
 SMALL = 1e-3
 """Size of states [SI] at which models are compared: large enough for nonlinear terms, small enough for every linkage."""
 
@@ -248,6 +251,8 @@ def smooth_goes_to_exact(study: Study) -> None:
     exact = build(symbolic(study), switched)
     modes = [switch.mode for switch in switched.switches.values()]
     sides = [ca.sign(switch.argument) for switch in switched.switches.values()]
+    for _ in range(NESTED):
+        sides = [ca.substitute(side, ca.vertcat(*modes), ca.vertcat(*sides)) for side in sides]
     with_sides = _equations(exact, [ca.substitute(e, ca.vertcat(*modes), ca.vertcat(*sides)) for e in _rows(exact)])
     errors = []
     for part in WIDTHS:

@@ -48,7 +48,7 @@ def interpreted(monkeypatch):
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch):
     """No motion here has more than some hundred corners: one that goes on chattering at a corner fails soon."""
-    monkeypatch.setattr("damperopt.motion.exact.MAX_EVENTS", 300)
+    monkeypatch.setattr("damperopt.motion.events.MAX_EVENTS", 300)
 
 
 def design_of(topology, **changes):

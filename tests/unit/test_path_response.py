@@ -51,6 +51,8 @@ def test_a_missing_length_has_no_response():
 
 def test_the_tyre_s_own_line_is_shown_with_its_numbers():
     own = {"kind": "moreland", "lateral_stiffness": 1.1e6, "time_constant": 2e-3}
-    block = {key: value for key, value in STRING.items() if key not in ("carcass_stiffness", "relaxation_length")} | {"contact": own}
+    block = {key: value for key, value in STRING.items() if key not in ("carcass_stiffness", "relaxation_length")} | {
+        "contact": own
+    }
     tyre = tyre_of(**block | {"cornering_stiffness": 4.48e5, "aligning_stiffness": 3.4e4})
     assert any(name.startswith("moreland, lateral_stiffness") for name in path_response(tyre, 150e3).lines)

@@ -89,7 +89,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
-    link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load))
+    link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load, stroke))
     attachment = gear.attachments(x)["damper"]
     torque = damper_torque(damper, link, design, corners, attachment, Context(load, speed))
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)

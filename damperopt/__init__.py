@@ -32,6 +32,7 @@ _HOME = {
     "critical_speeds": "stability.critical",
     "filled_map": "charts.maps",
     "frozen_along": "motion.history",
+    "gain_schedule": "stability.gain_schedule",
     "joint_boundary": "charts.explicit",
     "json_schema": "study.config",
     "linear_gear": "stability.linear",

@@ -14,19 +14,22 @@ damper answers, and the gear moves on.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
 
 from .dampers.base import Context
+from .dampers.control import ACTUATOR, CONTROL_OUTPUTS, Control
 from .errors import ConfigError
 from .expressions.calculus import Expr, partial
 from .expressions.corners import Corners, Linear
 from .expressions.dae import DAE, NEWTON_STEPS
 from .linkages.elastic import elastic_linkage
 from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
+from .ports.linkage import Linkage
+from .ports.motion import Torque
 from .ports.wheel import Wheel
 from .quantities.named import Output, State
 from .strength.members import root_stress_of_force
@@ -91,15 +94,23 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
     link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load, stroke))
     attachment = gear.attachments(x)["damper"]
-    torque = damper_torque(damper, link, design, corners, attachment, Context(load, speed))
+    measured = x | {state.name: own for state, own in zip(tyre_states[0], strings[0], strict=True)}
+    context = Context(load, speed, wanted=_wanted(damper, link, measured, speed))
+    torque = damper_torque(damper, link, design, corners, attachment, context)
+    if damper.actuator is not None:
+        torque = _with_actuator(torque, damper.actuator, measured, speed, corners)
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)
 
-    states = [*gear.states(), *(state for own in tyre_states for state in own), *_chain(torque.states, damper.STATES)]
+    states = [
+        *gear.states(),
+        *(state for own in tyre_states for state in own),
+        *_chain(torque.states, (*damper.STATES, ACTUATOR)),
+    ]
     rates = [motion.rates[state.name] for state in gear.states()]
     rates += [rate for contact in contacts for rate in contact.rates]
     rates += [torque.rates[name] for name in torque.states]
     outputs = dict(torque.outputs) | dict(motion.outputs)
-    declared = [*gear.OUTPUTS, *(ROTARY_OUTPUTS if damper.ROTARY else OUTPUTS), *damper.KIND.OUTPUTS]
+    declared = [*gear.OUTPUTS, *(ROTARY_OUTPUTS if damper.ROTARY else OUTPUTS), *damper.KIND.OUTPUTS, *CONTROL_OUTPUTS]
     units = {output.name: output.unit for output in declared}
     for i, contact in enumerate(contacts):
         outputs |= {_named(name, i, len(wheels)): value for name, value in contact.outputs.items()}
@@ -135,6 +146,25 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
         relaxed=ca.vertcat(*(torque.relaxed.get(state.name, symbol) for state, symbol in zip(states, values, strict=True))),
         newton_steps=torque.newton_steps or NEWTON_STEPS,
     )
+
+
+def _wanted(damper: Any, link: Linkage, measured: Mapping[str, Expr], speed: Expr) -> Expr | None:
+    """Force against the stroke whose torque on the gear, at rest, is what a law that commands the damper wants."""
+    if not (damper.COMMANDED and damper.control):
+        return None
+    return -damper.control.wanted(measured, speed) / link.damper_lever
+
+
+def _with_actuator(torque: Torque, actuator: Control, measured: Mapping[str, Expr], speed: Expr, corners: Corners) -> Torque:
+    """The torque of linkage and damper with that of an actuator beside them."""
+    own = ca.SX.sym(ACTUATOR.name)
+    u, rate = actuator.torque(measured, own, speed, corners)
+    with_it = replace(torque, torque=torque.torque + u, outputs={**torque.outputs, "control_torque": u})
+    if rate is None:
+        return with_it
+    states, rates = {**torque.states, ACTUATOR.name: own}, {**torque.rates, ACTUATOR.name: rate}
+    held = {**torque.relaxed, ACTUATOR.name: own + actuator.lag * rate}
+    return replace(with_it, states=states, rates=rates, relaxed=held)
 
 
 def _rate(expression: Expr, load: ca.SX, ride: Ride) -> Expr:

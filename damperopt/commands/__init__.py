@@ -3,6 +3,8 @@
 from .analyse import analyse
 from .chart import chart
 from .components import components
+from .cycles import cycles
+from .gains import gains
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -15,6 +17,8 @@ __all__ = [
     "analyse",
     "chart",
     "components",
+    "cycles",
+    "gains",
     "init",
     "optimise",
     "report",

@@ -54,6 +54,8 @@ def simulate(
     from ..quantities.record import Force, Speed, Time
     from ..results import load_result
     from ..stability.linear import linear_gear
+    from ..stability.wavelength import shortest_wavelength
+    from ..study.cavitation import cavitation
     from . import summary
     from .along import run_along
     from .arguments import disturbance_of, quantity
@@ -103,7 +105,12 @@ def simulate(
 
     write_run(folder, write)
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
+    wave = shortest_wavelength(study, gear, [at_speed], [motion.load])
     summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    summary.show_contact_line(out, study, wave)
+    force = found.peaks.get("damper_torque" if study.damper.ROTARY else "damper_force", 0.0)
+    if boils := cavitation(study, study.start if values is None else values, force):
+        out.print(f"[yellow]Cavitation[/]: {boils}", soft_wrap=True)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
+    "cycles": "cycles",
     "decay": "motion",
     "mass_by_part": "design",
     "modes_before_after": "modes",
@@ -16,6 +17,7 @@ _HOME = {
     "save_each": "style",
     "styled": "style",
     "sweep_figure": "sweep",
+    "threshold": "cycles",
     "tornado": "design",
     "roll": "motion",
     "trajectory": "motion",

@@ -82,7 +82,7 @@ class Fast:
     """A CasADi function of vectors, called without its overhead (about 20 us)."""
 
     def __init__(self, inputs: list[ca.SX], outputs: list[ca.SX]):
-        function = ca.Function("fast", inputs, [ca.densify(ca.SX(e)) for e in outputs])
+        function = ca.Function("fast", inputs, ca.cse([ca.densify(ca.SX(e)) for e in outputs]))
         self._buffer, self._evaluate = function.buffer()
         self._in = [np.zeros(e.numel()) for e in inputs]
         self._out = [np.zeros(e.numel()) for e in outputs]
@@ -120,6 +120,12 @@ class Run:
         steps = STEPS_PER_CYCLE if model.has_joints else STEPS_WITHOUT_JOINTS
         self._max_step = 2 * math.pi / rate / steps
 
+    def begin_at(self, x: np.ndarray) -> None:
+        """Start at these states, wherever the chain stands."""
+        self._x0 = x.copy()
+        arguments = self._model.motion(x, self._z, self._modes, self._point)[2]
+        self._modes[:-1] = np.where(arguments < 0, -1.0, 1.0)
+
     def _relaxed(self, given: np.ndarray) -> np.ndarray:
         """State with the chain at rest; where it stands hangs on the corners, and which are passed on where it stands."""
         x = given
@@ -130,7 +136,7 @@ class Run:
         return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
-        """ode, Newton step, arguments of the corners, and `_grip`; with the linkage closed."""
+        """ode, Newton step, arguments of the corners, and `grip_of`; with the linkage closed."""
         self._point = self._drive.point(t)
         if not self._z.size:
             return self._model.motion(x, self._z, self._modes, self._point)
@@ -145,14 +151,22 @@ class Run:
         self._z = self._model.first_guess(x, self._z, self._modes, self._point)[0].copy()
         raise CannotClose
 
-    def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
+    def _held(self, t: float, x: np.ndarray) -> list[np.ndarray]:
+        """`_evaluated` with the friction that keeps what sticks where it is."""
         found = self._evaluated(t, x)
         if not self._sticks:
-            return found[0].copy()
-        _, drive, most, *slope = found[3]
-        self._modes[-1] = drive / most  # the friction that keeps it so
-        rate = self._evaluated(t, x)[0]
-        return rate - np.dot(slope, rate) / np.dot(slope, slope) * np.array(slope)  # and not even rounding moves it
+            return found
+        _, drive, most = found[3][:3]
+        self._modes[-1] = drive / most
+        return self._evaluated(t, x)
+
+    def _rate(self, t: float, x: np.ndarray) -> np.ndarray:
+        found = self._held(t, x)
+        rate = found[0].copy()
+        if not self._sticks:
+            return rate
+        slope = found[3][3:].copy()
+        return rate - np.dot(slope, rate) / np.dot(slope, slope) * slope  # and not even rounding moves it
 
     def rows_at(self, time: np.ndarray) -> tuple[list[np.ndarray], str]:
         """States and outputs at `time`, and why it ended early."""
@@ -176,10 +190,10 @@ class Run:
                     dense_output=True,
                 )
                 last = leg.t[-1]
-                for moment in time[len(rows) :]:
-                    if moment > last or (moment == last and leg.status == 1):
-                        break
-                    rows.append(self._row(moment, leg.sol(moment)))
+                moments = time[len(rows) :]
+                moments = moments[(moments < last) | ((moments == last) & (leg.status != 1))]
+                if moments.size:
+                    rows += [self._row(*place) for place in zip(moments, leg.sol(moments).T, strict=True)]
                 if leg.status == -1 or (leg.status == 0 and end == time[-1]):
                     return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
                 t, x = last, leg.y[:, -1].copy()
@@ -190,14 +204,14 @@ class Run:
         return rows, f"more than {MAX_EVENTS} events"
 
     def _row(self, t: float, x: np.ndarray) -> np.ndarray:
-        self._evaluated(t, x)
+        self._held(t, x)
         return self._model.rows(x, self._z, self._modes, self._point)[0].copy()
 
     def _events(self) -> list[Callable[[float, np.ndarray], float]]:
         """Functions that fall through zero when a corner is passed, friction last."""
 
         def corner(i: int) -> Callable[[float, np.ndarray], float]:
-            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i] + NOISE * self._sizes[i])
+            return lambda t, x: float(self._held(t, x)[2][i] * self._modes[i] + NOISE * self._sizes[i])
 
         def grip(t: float, x: np.ndarray) -> float:
             rate, drive, most = self._evaluated(t, x)[3][:3]
@@ -220,6 +234,7 @@ class Run:
         if self._model.corners in passed and self._sticks:
             self._settle(t, x, others)
             self._sticks, self._modes[-1] = False, np.sign(self._evaluated(t, x)[3][1])
+            self._settle(t, x, others)
             return
         if self._model.corners in passed:
             rate, _, most, *slope = self._evaluated(t, x)[3]
@@ -228,15 +243,8 @@ class Run:
         self._settle(t, x, [*others, self._model.corners])
 
     def _settle(self, t: float, x: np.ndarray, which: Any) -> None:
-        """Modes that go with a state; a corner that is met exactly is judged by where the motion goes."""
-        for _ in range(2):  # a corner's argument may hang on the mode of another
-            arguments = self._evaluated(t, x)[2].copy()
-            self._sizes = np.maximum(self._sizes, np.abs(arguments))
-            ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
-            for i in which:
-                if i < self._model.corners:
-                    side = arguments[i] if arguments[i] else ahead[i]
-                    self._modes[i] = np.sign(side) if side else self._modes[i]
+        """Modes that go with a state, those of corners on what sticks or slides anew where that changes."""
+        self._settle_corners(t, x, which)
         if not self._model.sticks or self._model.corners not in which:
             return
         rate, drive, most = self._evaluated(t, x)[3][:3]
@@ -245,3 +253,15 @@ class Run:
             self._modes[-1] = 0.0 if self._sticks else np.sign(drive)
         else:
             self._sticks, self._modes[-1] = False, np.sign(rate)
+        self._settle_corners(t, x, which)
+
+    def _settle_corners(self, t: float, x: np.ndarray, which: Any) -> None:
+        """A corner that is met exactly is judged by where the motion goes."""
+        for _ in range(2):  # a corner's argument may hang on the mode of another
+            arguments = self._held(t, x)[2].copy()
+            self._sizes = np.maximum(self._sizes, np.abs(arguments))
+            ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
+            for i in which:
+                if i < self._model.corners:
+                    side = arguments[i] if arguments[i] else ahead[i]
+                    self._modes[i] = np.sign(side) if side else self._modes[i]

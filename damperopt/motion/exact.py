@@ -31,7 +31,7 @@ from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
 
-__all__ = ["ExactSimulator", "simulate_exactly"]
+__all__ = ["ExactSimulator", "grip_of", "one_friction", "simulate_exactly"]
 
 FEWEST_POINTS = 2000
 
@@ -107,7 +107,7 @@ class ExactSimulator:
         else:
             dae, point = dae_along(study, corners, own_stroke)
             data = dae.data[: len(dae.data_names)]
-        dae, friction = _one_friction(dae, corners)
+        dae, friction = one_friction(dae, corners)
         self.corners, self.sticks = len(corners.switches), friction is not None
         self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
         modes = [switch.mode for switch in corners.switches.values()]
@@ -120,7 +120,7 @@ class ExactSimulator:
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), point]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
-        motion = [dae.ode, step, arguments, _grip(dae, friction)]
+        motion = [dae.ode, step, arguments, grip_of(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, data)
         self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
@@ -215,12 +215,42 @@ class ExactSimulator:
         status: Literal["completed", "stopped"] = "stopped" if message else "completed"
         return Trajectory(0.0, 0.0, time, states, named, status, message, "exact", units=self.units)
 
+    def stretch(
+        self,
+        speed: float,
+        load: float,
+        disturbance: Disturbance | Mapping[str, Any],
+        time: np.ndarray,
+        start: np.ndarray | None = None,
+        tolerance: float = 1e-8,
+    ) -> np.ndarray:
+        """States, hidden ones too, and outputs by `names` (k, q) at `time` (m,) [s]; k < m where the motion cannot go on.
+
+        Parameters
+        ----------
+        speed, load : float
+            [m/s], [N]
+        disturbance : Disturbance or mapping
+        time : ndarray
+            Ascending from 0.
+        start : ndarray or None
+            (n,) states at the start, in the place of those of the disturbance.
+        tolerance : float
+            Relative.
+        """
+        disturbance = posed(self.study, self.state_names, speed, load, disturbance, float(time[-1]))
+        drive = Steady(speed, load, disturbance, self.study.gear.wheel_radius)
+        run = Run(self, drive, disturbance, tolerance, self._rate(speed, load))
+        if start is not None:
+            run.begin_at(start)
+        return np.array(run.rows_at(time)[0])
+
 
 FRICTIONS = ("friction", "damper friction")
 """Corners at which the motion sticks: of the strut, and of a damper."""
 
 
-def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
+def one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
     """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
     found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
     found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
@@ -233,7 +263,7 @@ def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
     return dae, found[0] if found else None
 
 
-def _grip(dae: DAE, friction: Switch | None) -> Any:
+def grip_of(dae: DAE, friction: Switch | None) -> Any:
     """Rate at which the friction rubs; its derivative without friction; what full friction takes off that; d rate/dx."""
     if friction is None:
         return ca.SX.zeros(3 + dae.x.numel())

@@ -29,6 +29,10 @@ IDAS_FLOOR, LEAST_IDAS = 3e-12, 1e-12
 """Relative tolerance below which IDAS no longer finds a first step, with algebraic unknowns and without."""
 
 
+FLAGS = ["-O1", "-march=native"]
+"""Of the compiler: more takes longer than the fifth of a motion's time that it gains."""
+
+
 @cache
 def has_compiler() -> bool:
     """Whether a C compiler is at hand, as just-in-time compilation needs."""
@@ -238,7 +242,7 @@ def _compiled(engine: str, equations: str, grid: tuple[float, ...], options: tup
     function = ca.Function.deserialize(equations)
     symbols = function.sx_in()
     problem = dict(zip(function.name_in() + function.name_out(), symbols + function.call(symbols), strict=True))
-    files = {"cleanup": False, "flags": ["-O3", "-march=native"], "verbose": False}  # removed with their folder
+    files = {"cleanup": False, "flags": FLAGS, "verbose": False}  # removed with their folder
     jit = {"jit": True, "jit_cleanup": False, "compiler": "shell", "jit_options": files}
     with tempfile.TemporaryDirectory(prefix="damperopt-") as folder, contextlib.chdir(folder):
         return ca.integrator("motion", engine, problem, 0, list(grid), dict(options) | jit)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..quantities.record import LoadRange
 from ..quantities.shown import as_written, shown
 from ..quantities.shown import scale as scale_of
-from ..results import DesignResult
+from ..results import Certificate, DesignResult
 from ..stability.critical import CriticalSpeed
 from ..study.components import unit_of_name
 from ..study.study import Study
@@ -218,10 +218,14 @@ def beyond(study: Study, found: CriticalSpeed | None) -> str:
 
 
 def certificate(result: DesignResult) -> str:
-    """The proof in words."""
-    proof = result.certificate
-    if proof is None:
+    """The proof in words; with an actuator both."""
+    if result.certificate is None:
         return "Nothing was proved."
+    words = _proof_in_words(result.certificate)
+    return words if result.fail_safe is None else f"{words} With the actuator off: {_proof_in_words(result.fail_safe)}"
+
+
+def _proof_in_words(proof: Certificate) -> str:
     method = {
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",

@@ -205,10 +205,10 @@ class DelayGear(LinearGear):
         """Of the structure and the foremost contact points: as many as there are roots when the delay vanishes."""
         return self.named
 
-    def modes(self, speeds: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-        """The rightmost eigenvalues (m, k) [1/s], some more than principal states, and how each state takes part, (m, n, k)."""
+    def modes(self, speeds: Any, loads: Any, spare: int = SPARE) -> tuple[np.ndarray, np.ndarray]:
+        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and their states' parts (m, n, k)."""
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
-        values = self.roots(V, F_z, len(self.named) + SPARE)
+        values = self.roots(V, F_z, len(self.named) + spare)
         A, _ = self.frozen(V, F_z).at(values)
         n = A.shape[-1]
         near = (values + 1e-10 * (1 + np.abs(values)))[..., None, None] * np.eye(n) - A
@@ -303,12 +303,15 @@ def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.nd
     turns = np.abs(starts) * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds)[:, None]
     resolved = turns <= order
     # what the field resolves comes first, from right to left
-    starts = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
-    resolved = np.sort(~resolved, axis=1)[:, :count] == 0
-    roots, converged = _newton(model, starts)
-    fine = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
-    kept = np.where(fine, roots, starts)
-    return np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1), fine.all(axis=1)
+    found = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
+    fine = (resolved.sum(axis=1) >= count) | (order == ORDERS[-1])  # elsewhere a finer field will tell
+    starts, resolved = found[fine], np.arange(count) < resolved[fine].sum(axis=1)[:, None]
+    roots, converged = _newton(model.taken(fine), starts)
+    met = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
+    kept = np.where(met, roots, starts)
+    found[fine] = np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1)
+    fine[fine] = met.all(axis=1)
+    return found, fine
 
 
 def _newton(model: Frozen, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -29,6 +29,7 @@ def covers(study: Study) -> list[str]:
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
     found += _uncertain(study) + _stroke(study)
+    found += _controlled(damper)
     if words := study.tyre.origin():
         found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
@@ -42,6 +43,21 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _controlled(damper: Any) -> list[str]:
+    """What of a control is covered."""
+    if damper.control is None:
+        return []
+    if damper.actuator is None:
+        return [
+            "The law of damper.control commands a current, which the certificate does not hold: it is of the damper without."
+        ]
+    lag = "" if damper.control.lag is None else f" and the lag of {1e3 * damper.control.lag:g} ms"
+    return [
+        f"It holds the actuator with its gains at every speed{lag}, as long as it does not saturate; a second certificate is "
+        "of the gear with the actuator off."
+    ]
 
 
 def _stroke(study: Study) -> list[str]:

@@ -18,6 +18,7 @@ ELL = DESIGN["L"] * np.sin(DESIGN["gamma"])
 STIFFNESS = 3.8e5
 SILENT = {
     "law": "nonlinear",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "cornering_coefficient": 0.0,

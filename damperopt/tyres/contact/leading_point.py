@@ -46,4 +46,4 @@ class LeadingPoint(ContactLine):
 
     def leaves_out(self) -> tuple[str, ...]:
         """The memory of the footprint."""
-        return ("contact memory of the tyre (tyre.contact leading_point: several contact lengths per wavelength needed)",)
+        return ("contact memory of the tyre (tyre.contact leading_point; memory has it)",)

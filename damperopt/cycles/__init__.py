@@ -1,0 +1,1 @@
+"""Limit cycles of a gear: orbits by collocation, their stability, branches over any number of a study, hidden shimmy."""

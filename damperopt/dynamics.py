@@ -92,7 +92,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
-    link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load))
+    link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load, stroke))
     attachment = gear.attachments(x)["damper"]
     measured = x | {state.name: own for state, own in zip(tyre_states[0], strings[0], strict=True)}
     context = Context(load, speed, wanted=_wanted(damper, link, measured, speed))

@@ -132,9 +132,9 @@ class Study(Record):
         at_rest = {state.name: 0.0 for state in self.gear.states()}
         return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
 
-    def beyond_data(self, load: float) -> str:
-        """Why tyre or strut has no answer at a load on the gear [N], in words; empty where both have one."""
-        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load)
+    def beyond_data(self, load: float, stroke: float | None = None) -> str:
+        """Why tyre or strut has no answer at a load on the gear [N], and a stroke [m] if it is not in balance; else nothing."""
+        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load, stroke)
         return strut or next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     @property

@@ -13,7 +13,7 @@ from ..motion.exact import ExactSimulator
 from ..motion.measure import fastest_rate
 from ..motion.question import refuse_start, valid_part
 
-__all__ = ["SIZES", "Edge", "Fate", "Kicker", "Threshold", "edge", "threshold"]
+__all__ = ["SIZES", "Edge", "Kicker", "Threshold", "edge", "threshold"]
 
 Fate = Literal["dies", "grows", "stays", "leaves"]
 """The yaw angle falls to a part `DEAD` while all else falls too; it exceeds `GROWN` times the first; neither within `CHUNKS`;

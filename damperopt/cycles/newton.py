@@ -10,7 +10,7 @@ import numpy as np
 
 from .collocation import Leg, Linearised, Path, linearised
 
-__all__ = ["Condition", "Corrected", "Metric", "NoOrbit", "Phase", "Tangent", "corrected", "phase", "tangent"]
+__all__ = ["Corrected", "Metric", "NoOrbit", "Phase", "Tangent", "corrected", "phase", "tangent"]
 
 ITERATIONS = 10
 
@@ -182,7 +182,9 @@ def _system(
         if along is not None:
             arc += np.einsum("rin,rinj->j", along.stages[k] / metric.states**2, legs[-1].states) / count @ chain
         if k < K - 1:
-            value, gradients[k], slope = conditions[k](leg.end, path.parameters, direction)
+            condition = conditions[k]
+            assert not isinstance(condition, Phase)  # that is for orbits of one leg
+            value, gradients[k], slope = condition(leg.end, path.parameters, direction)
             system[n + k] = gradients[k] @ before[:, :-1]
             system[n + k, -1] += slope
             right[n + k] = -value - gradients[k] @ before[:, -1]

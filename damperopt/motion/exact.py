@@ -10,7 +10,6 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -18,13 +17,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..dynamics import build
-from ..errors import ConfigError
-from ..expressions.corners import Switch, Switched
-from ..expressions.dae import DAE
+from ..expressions.corners import Switched
 from ..stability.linear import LinearGear, LinearModel
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 from ..symbols import data_values, symbolic
+from .friction import grip_of, one_friction, slopes_of
 from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
@@ -47,8 +45,11 @@ STILL = 1e-13
 """Rate [rad/s] below which nothing rubs: what rounding leaves where the motion has stopped."""
 
 NOISE = 1e-11
-"""Relative to the sizes that its argument has had: how far a corner must be passed. A motion that creeps into a corner would
-meet it again and again by rounding."""
+"""Relative to the sizes that its argument has had: how far a corner must be passed, beside what the integrator does not
+resolve. A motion that creeps into a corner, or stays on it as the force of a damper in a gap, would meet it again and again."""
+
+ABSOLUTE = 1e-3
+"""Absolute over relative tolerance."""
 
 STEPS_PER_CYCLE = 40
 """Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
@@ -115,7 +116,7 @@ class ExactSimulator:
         self.study, self.model = study, LinearModel(study) if model is None else model
         corners = Switched()
         dae = build(symbolic(study), corners)
-        dae, friction = _one_friction(dae, corners)
+        dae, friction = one_friction(dae, corners)
         self.corners, self.sticks = len(corners.switches), friction is not None
         self.has_joints = friction is not None or any(not name.startswith("slip limit") for name in corners.switches)
         modes = [switch.mode for switch in corners.switches.values()]
@@ -128,10 +129,16 @@ class ExactSimulator:
 
         inputs = [dae.x, dae.z, ca.vertcat(*modes), ca.vertcat(dae.speed, dae.load, dae.yaw_torque)]
         arguments = ca.vertcat(ca.SX(0, 1), *(switch.argument for switch in corners.switches.values()))
-        motion = [dae.ode, step, arguments, _grip(dae, friction)]
+        motion = [dae.ode, step, arguments, grip_of(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, dae.data)
-        self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
+        self._expressions = (
+            motion,
+            [rows],
+            [ca.SX(dae.first_guess())],
+            [dae.relaxed],
+            [ca.sum2(ca.fabs(slopes_of(dae, arguments)))],
+        )
         self._take(study.start if design is None else design, complete=design is not None)
 
     def _take(self, design: Mapping[str, float], complete: bool = True) -> None:
@@ -141,7 +148,7 @@ class ExactSimulator:
             return  # calls will give one
         self.model.at(design)
         values = ca.DM([*(design[name] for name in self.model.design_names), *data_values(self.study)])
-        self.motion, self.rows, self.first_guess, self.relaxed = (
+        self.motion, self.rows, self.first_guess, self.relaxed, self.slopes = (
             _Fast(self._inputs, [ca.substitute(e, self._known, values) for e in expressions])
             for expressions in self._expressions
         )
@@ -192,35 +199,6 @@ class ExactSimulator:
         return Trajectory(speed, load, time, states, named, status, message, "exact", forcing, self.units)
 
 
-FRICTIONS = ("friction", "damper friction")
-"""Corners at which the motion sticks: of the strut, and of a damper."""
-
-
-def _one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
-    """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
-    found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
-    found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
-    if len(found) == 2:
-        if not ca.is_equal(ca.SX(found[0].argument), ca.SX(found[1].argument), 10):
-            raise ConfigError("friction of strut and damper at two places cannot be simulated exactly; allowed: one of the two")
-        ode, alg = (ca.substitute(rows, found[1].mode, found[0].mode) for rows in (dae.ode, dae.alg))
-        outputs = {name: ca.substitute(ca.SX(value), found[1].mode, found[0].mode) for name, value in dae.outputs.items()}
-        dae = replace(dae, ode=ode, alg=alg, outputs=outputs)
-    return dae, found[0] if found else None
-
-
-def _grip(dae: DAE, friction: Switch | None) -> Any:
-    """Rate at which the friction rubs; its derivative without friction; what full friction takes off that; d rate/dx."""
-    if friction is None:
-        return ca.SX.zeros(3 + dae.x.numel())
-    rate = ca.SX(friction.argument)
-    slope = ca.jacobian(rate, dae.x)
-    if dae.z.numel():
-        slope -= ca.jacobian(rate, dae.z) @ ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ ca.jacobian(dae.alg, dae.x)
-    change = slope @ dae.ode
-    return ca.vertcat(rate, ca.substitute(change, friction.mode, 0), -ca.jacobian(change, friction.mode), slope.T)
-
-
 class _Fast:
     """A CasADi function of vectors, called without its overhead (about 20 us)."""
 
@@ -257,7 +235,7 @@ class _Run:
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
-        self._sticks, self._sizes = False, np.zeros(model.corners)
+        self._sticks, self._sizes, self._unresolved = False, np.zeros(model.corners), np.zeros(model.corners)
         self._z = np.zeros(model.unknowns)
         self._x0 = self._relaxed(np.array(disturbance.start(model.state_names)))
         self._z = model.first_guess(self._x0, self._z, self._modes, self._point)[0].copy()
@@ -274,7 +252,7 @@ class _Run:
         return x
 
     def _evaluated(self, t: float, x: np.ndarray) -> list[np.ndarray]:
-        """ode, Newton step, arguments of the corners, and `_grip`; with the linkage closed."""
+        """ode, Newton step, arguments of the corners, and `grip_of`; with the linkage closed."""
         self._point[self._external] = self._torque
         if self._unbalance:
             self._point[self._external] += self._unbalance * self._wheel_rate**2 * math.sin(self._wheel_rate * t)
@@ -314,7 +292,7 @@ class _Run:
                     x,
                     method="DOP853",
                     rtol=self._tolerance,
-                    atol=self._tolerance / 1000,
+                    atol=ABSOLUTE * self._tolerance,
                     max_step=self._max_step,
                     first_step=min(1e-3 * self._max_step, (time[-1] - t) / 2),
                     events=self._events(),
@@ -328,6 +306,7 @@ class _Run:
                 if leg.status != 1:
                     return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
                 t, x = last, leg.y[:, -1].copy()
+                self._grow(leg.t, leg.y)
                 self._cross(t, x, [i for i, times in enumerate(leg.t_events) if times.size])
         except _CannotClose:
             return rows, "the equations of the closed linkage are not solved"
@@ -341,7 +320,8 @@ class _Run:
         """Functions that fall through zero when a corner is passed, friction last."""
 
         def corner(i: int) -> Callable[[float, np.ndarray], float]:
-            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i] + NOISE * self._sizes[i])
+            play = NOISE * self._sizes[i] + self._unresolved[i]
+            return lambda t, x: float(self._evaluated(t, x)[2][i] * self._modes[i] + play)
 
         def grip(t: float, x: np.ndarray) -> float:
             rate, drive, most = self._evaluated(t, x)[3][:3]
@@ -354,6 +334,10 @@ class _Run:
         for function in functions:
             function.terminal, function.direction = True, -1  # type: ignore[attr-defined]  # how SciPy is told
         return functions
+
+    def _grow(self, times: np.ndarray, states: np.ndarray) -> None:
+        for t, x in zip(times, states.T, strict=True):
+            self._sizes = np.maximum(self._sizes, np.abs(self._evaluated(t, x)[2]))
 
     def _cross(self, t: float, x: np.ndarray, passed: list[int]) -> None:
         """Change the modes of the corners that were passed, and of those that this moves."""
@@ -376,6 +360,7 @@ class _Run:
         for _ in range(2):  # a corner's argument may hang on the mode of another
             arguments = self._evaluated(t, x)[2].copy()
             self._sizes = np.maximum(self._sizes, np.abs(arguments))
+            self._unresolved = ABSOLUTE * self._tolerance * self._model.slopes(x, self._z, self._modes, self._point)[0]
             ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
             for i in which:
                 if i < self._model.corners:

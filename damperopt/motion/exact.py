@@ -25,7 +25,7 @@ from ..study.study import Study
 from ..symbols import data_values, symbolic
 from .course import Along, Course, dae_along
 from .events import Drive, Fast, Run, Steady
-from .grip import grip_of, one_friction
+from .grip import grip_of, one_friction, slopes_of
 from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
@@ -122,7 +122,13 @@ class ExactSimulator:
         motion = [dae.ode, step, arguments, grip_of(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, data)
-        self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
+        self._expressions = (
+            motion,
+            [rows],
+            [ca.SX(dae.first_guess())],
+            [dae.relaxed],
+            [ca.sum2(ca.fabs(slopes_of(dae, arguments)))],
+        )
         self._take(study.start if design is None else design, complete=design is not None)
 
     def _take(self, design: Mapping[str, float], complete: bool = True) -> None:
@@ -132,7 +138,7 @@ class ExactSimulator:
             return  # calls will give one
         self.model.at(design)
         values = ca.DM([*(design[name] for name in self.model.design_names), *data_values(self.study)])
-        self.motion, self.rows, self.first_guess, self.relaxed = (
+        self.motion, self.rows, self.first_guess, self.relaxed, self.slopes = (
             Fast(self._inputs, [ca.substitute(e, self._known, values) for e in expressions])
             for expressions in self._expressions
         )

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from .collocation import Path
 from .floquet import shape
 from .flow import Flow
-from .newton import Condition, Corrected, Metric, NoOrbit, Tangent, corrected, phase, tangent
+from .newton import Condition, Corrected, Metric, NoOrbit, Phase, Tangent, corrected, phase, tangent
 from .orbit import Orbit, orbit_of
 
 __all__ = ["Along", "follow", "scales_of"]
@@ -25,6 +25,12 @@ WIDTHS = 20
 
 MOST = 1000
 """Orbits of a branch."""
+
+CAUTIOUS = 0.3
+"""Part of the way to rest by the tangent that a step may go: the branch is back at half of it, half a cycle later."""
+
+AT_REST = 0.01
+"""In `Along.scales`: size of an orbit at which its branch has come back to rest."""
 
 FEW = 3
 """Iterations up to which the next step is longer."""
@@ -67,7 +73,7 @@ class Along:
     low: float
     high: float
     scales: np.ndarray
-    conditions: Callable[[Path, Metric], Sequence[Condition]] = lambda path, metric: [phase(path, metric)]
+    conditions: Callable[[Path, Metric], Sequence[Condition | Phase]] = lambda path, metric: [phase(path, metric)]
     events: bool = False
     changed: Callable[[Path], bool] | None = None
 
@@ -79,6 +85,10 @@ class Along:
     def value(self, path: Path) -> float:
         """Of the parameter on a path."""
         return float(path.parameters[self.flow.names.index(self.name)])
+
+    def size(self, path: Path) -> float:
+        """Of an orbit, in `scales`."""
+        return float(np.sqrt(((path.states / self.scales) ** 2).mean()))
 
     def metric(self, path: Path) -> Metric:
         """Scales on a path: the sizes of its states, but not less than `scales`."""
@@ -148,7 +158,7 @@ class _Walk:
             if there is None:
                 self.end = "lost" if along.changed is None else "changed"
                 return
-            if float(np.sum(there.path.states * self.here.path.states / branch.metric.states**2)) < 0:
+            if along.size(there.path) < AT_REST:
                 self.end = "rest"
                 return
             value = along.value(there.path)
@@ -173,6 +183,7 @@ class _Walk:
         if direction.along(self._ahead, metric) < 0:
             direction = direction.times(-1)
         branch = _Step(along, here, direction, metric)
+        step = min(step, CAUTIOUS * _to_rest(here.path, direction, metric))
         while step >= LEAST:
             with suppress(NoOrbit):
                 return branch, (branch.at(step), step)
@@ -184,6 +195,13 @@ class _Walk:
         if self._along.value(self.here.path) != limit:
             with suppress(NoOrbit):
                 yield self._along.orbit(self._along.held(branch.near(limit), limit))
+
+
+def _to_rest(path: Path, direction: Tangent, metric: Metric) -> float:
+    """How far along a tangent the amplitude vanishes; inf where it grows."""
+    change = np.concatenate([stages.reshape(-1, stages.shape[-1]) for stages in direction.stages])
+    towards = float(np.sum(path.states * change / metric.states**2))
+    return float(np.sum((path.states / metric.states) ** 2)) / -towards if towards < 0 else float("inf")
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,9 @@ RELEASES = (2e-3, 2e-2, 0.15)
 SETTLED = 1e-3
 """Relative change of the amplitude from stretch to stretch at which a motion is handed to Newton's method."""
 
+PATIENCE = 60
+"""Stretches of motion after which it is handed on, settled or not."""
+
 GONE = 1e-3
 """Of its first amplitude: a motion that has died, and an orbit that is none."""
 
@@ -97,15 +100,16 @@ class Seeder:
     def settled(self, value: float, size: float) -> Found | None:
         """The cycle on which a release settles; None where it dies, leaves the model or does not settle."""
         kicker, speed, load = self.kicker(value)
-        yaw, before, first = self.flow.index("yaw_angle"), 0.0, 0.0
-        for states, whole in kicker.stretches(speed, load, size):
-            amplitude = float(np.ptp(states[:, yaw])) / 2
-            first = first or amplitude
-            if not whole or amplitude <= GONE * first:
+        largest, before = np.full(self.flow.n, 1e-300), np.zeros(self.flow.n)
+        for states, whole in kicker.stretches(speed, load, size, PATIENCE):
+            sizes = np.ptp(states, axis=0)
+            largest = np.maximum(largest, sizes)
+            moves = float((sizes / largest).max())
+            if not whole or moves <= GONE:
                 return None
-            if abs(amplitude - before) <= SETTLED * amplitude:
+            if (np.abs(sizes - before) / largest).max() <= SETTLED * moves:
                 return self.solved(value, kicker.chunk(speed, load), states)
-            before = amplitude
+            before = sizes
         return self.solved(value, kicker.chunk(speed, load), states)
 
     def between(self, value: float) -> Found | None:

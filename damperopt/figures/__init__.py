@@ -22,6 +22,7 @@ _HOME = {
     "roll": "motion",
     "trajectory": "motion",
     "tyre_over_load": "tyre",
+    "tyre_over_path": "tyre",
     "tyre_over_slip": "tyre",
 }
 """Module of each public function; that of a chart is `chart.chart`, that of a linkage `linkage.linkage`."""

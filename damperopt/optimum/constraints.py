@@ -78,7 +78,8 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout, softness
     list of Constraint
     """
     required = study.requirements
-    blocks = [c for m in study.damper.members(design) if m.kind == "arm" for c in _arm(study, m, sized.event)]
+    bending = [member for member in study.damper.members(design) if member.kind in ("arm", "beam")]
+    blocks = [c for member in bending for c in _arm(study, member, sized.event)]
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))

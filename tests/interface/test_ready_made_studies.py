@@ -71,6 +71,15 @@ def test_tail_wheel_ends_in_a_flutter_or_in_shimmy(study):
         assert np.degrees(np.abs(motion["yaw_angle"][-40:]).max()) == pytest.approx(end, rel=0.1)
 
 
+@pytest.mark.parametrize("study", ["nose_gear_imported"], indirect=True)
+def test_condensed_frame_needs_little_damping(study):
+    abscissa, speed = worst(study, {"c_vane": 1.0}, 30e3)
+    assert abscissa == pytest.approx(0.97, abs=0.01)
+    assert speed == pytest.approx(70.0)
+    assert worst(study, {"c_vane": 2.87}, 30e3)[0] == pytest.approx(-0.5, abs=0.01)
+    assert damperopt.certify(study, {"c_vane": 2.9}, margin=0.5).proved
+
+
 @pytest.mark.parametrize("study", ["nose_gear_mr"], indirect=True)
 def test_fail_safe_is_proved_and_the_current_is_simulated(study):
     result = damperopt.optimise(study)

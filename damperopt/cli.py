@@ -14,6 +14,7 @@ with interrupts.at_once():
 
     from .commands import (
         analyse,
+        breakout,
         chart,
         components,
         gains,
@@ -40,7 +41,22 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (optimise, report, analyse, simulate, gains, chart, sweep, tyre, thesis, components, validate, init, schema):
+for command in (
+    optimise,
+    report,
+    analyse,
+    simulate,
+    gains,
+    breakout,
+    chart,
+    sweep,
+    tyre,
+    thesis,
+    components,
+    validate,
+    init,
+    schema,
+):
     app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 

@@ -1,6 +1,7 @@
 """Commands of the command line, a file each."""
 
 from .analyse import analyse
+from .breakout import breakout
 from .chart import chart
 from .components import components
 from .gains import gains
@@ -14,6 +15,7 @@ from .tyre import tyre
 
 __all__ = [
     "analyse",
+    "breakout",
     "chart",
     "components",
     "gains",

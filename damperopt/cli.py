@@ -17,6 +17,7 @@ with interrupts.at_once():
         breakout,
         chart,
         components,
+        cycles,
         gains,
         init,
         optimise,
@@ -41,22 +42,24 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (
+IN_ORDER = (
     optimise,
     report,
     analyse,
     simulate,
-    gains,
-    breakout,
+    cycles,
     chart,
     sweep,
     tyre,
+    gains,
+    breakout,
     thesis,
     components,
     validate,
     init,
     schema,
-):
+)
+for command in IN_ORDER:
     app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 

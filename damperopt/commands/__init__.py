@@ -4,6 +4,7 @@ from .analyse import analyse
 from .breakout import breakout
 from .chart import chart
 from .components import components
+from .cycles import cycles
 from .gains import gains
 from .optimise import optimise
 from .report import report
@@ -18,6 +19,7 @@ __all__ = [
     "breakout",
     "chart",
     "components",
+    "cycles",
     "gains",
     "init",
     "optimise",

@@ -19,6 +19,7 @@ from ..dynamics import build
 from ..linkages.elastic import elastic_linkage
 from ..motion.measure import PEAKS
 from ..objectives import sized_layout
+from ..ports.linkage import Linkage
 from ..ports.sizing import Size
 from ..quantities.named import DesignVariable
 from ..results import OperatingPoint
@@ -76,7 +77,8 @@ class DesignProblem:
     units : dict of str to str
         SI units of the variables.
     has_one_damping, plain : bool
-        Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own.
+        Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own, as strongly
+        at every load.
     model, search_model : LinearModel
         Of the study, and of the rational one that the program holds in its place where the tyre has a delay.
     fail_safe, fail_safe_search : FailSafe or None
@@ -105,7 +107,8 @@ class DesignProblem:
         link = elastic_linkage(made, design)
         sized = sized_layout(made, design, link, load, [factors[i] for i in range(len(PEAKS))])
         parts = sized.masses
-        self.constraints: tuple[Constraint, ...] = tuple(strength(made, design, sized) + geometry(made, design, link, sized))
+        rows = strength(made, design, sized, _softness(made, design, link, load)) + geometry(made, design, link, sized)
+        self.constraints: tuple[Constraint, ...] = tuple(rows)
         own_sizes = [size for size in sized.sizes if size.name not in design]
         own_sizes += [_wall_size(key, symbol, *walls[key]) for key, symbol in open_walls.items()]
         self.size_names = tuple(size.name for size in own_sizes)
@@ -123,11 +126,8 @@ class DesignProblem:
         self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
         damping = symbols.study.damper.damping({**design, **link.as_printed})
         self.has_one_damping = damping is not None
-        self.plain = (
-            self.has_one_damping
-            and self.fail_safe is None
-            and dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
-        )
+        rigid = dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
+        self.plain = self.has_one_damping and rigid and self.fail_safe is None and study.gear.strut is None
         damping = ca.SX.nan() if damping is None else damping * link.damper_lever**2
         self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, damping])
 
@@ -335,3 +335,11 @@ def _with_walls(study: Any, walls: Mapping[str, ca.SX]) -> Any:
 
 def _wall_size(section: str, wall: ca.SX, least: float, most: float) -> Size:
     return Size(f"{section} wall", "1", wall, {"least": (least, ())}, least, least, most)
+
+
+def _softness(study: Any, design: Mapping[str, ca.SX], linkage: Linkage, load: ca.SX) -> Any:
+    """Stroke of the damper under a torque at the largest load over that with the shock strut fully out, s'/k_psi of both."""
+    if study.gear.strut is None or study.damper.ROTARY:
+        return 1
+    pressed = elastic_linkage(study, design, study.gear.stroke(load))
+    return pressed.damper_lever / pressed.torsional_stiffness * linkage.torsional_stiffness / linkage.damper_lever

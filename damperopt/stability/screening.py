@@ -46,8 +46,11 @@ class Screening:
     """
 
     def __init__(self, study: Study):
-        none = {"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0}
-        bare = study.replace(damper=none, **({"requirements__fail_safe_margin": None} if study.requirements else {}))
+        bare = study.replace(
+            damper={"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0},
+            **({"requirements__fail_safe_margin": None} if study.requirements else {}),
+            **({"gear__strut__torsional_stiffness": None} if study.gear.strut else {}),  # in the place of what is asked
+        )
         self._study, self._model = study, LinearModel(bare)
         self._data = dict(zip(data_names(bare), data_values(bare), strict=True))
 

@@ -76,8 +76,8 @@ class Study(Record):
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
         for load in self.envelope.samples(LOADS):
-            if words := self.beyond_tyre(load):
-                allowed = "loads that the tyre has data for"
+            if words := self.beyond_data(load):
+                allowed = "loads that tyre and strut have data for"
                 raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
         self._certain_enough()
         self._controllable()
@@ -132,9 +132,10 @@ class Study(Record):
         at_rest = {state.name: 0.0 for state in self.gear.states()}
         return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
 
-    def beyond_tyre(self, load: float) -> str:
-        """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
-        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
+    def beyond_data(self, load: float, stroke: float | None = None) -> str:
+        """Why tyre or strut has no answer at a load on the gear [N], and a stroke [m] if it is not in balance; else nothing."""
+        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load, stroke)
+        return strut or next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:

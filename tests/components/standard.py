@@ -49,8 +49,8 @@ SMALL = 1e-3
 BASE = """
 name: example
 gear: {kind: yaw, yaw_inertia: 20 kg m^2, caster_length: 0.1 m, wheel_radius: 0.35 m}
-tyre: {law: arctangent, half_contact_length: 0.1 m, relaxation_length: 0.25 m, cornering_coefficient: 0.4 1/rad,
-       aligning_coefficient: 0.3 m/rad, aligning_slip_limit: 10 deg}
+tyre: {law: arctangent, contact: leading_point, half_contact_length: 0.1 m, relaxation_length: 0.25 m,
+       cornering_coefficient: 0.4 1/rad, aligning_coefficient: 0.3 m/rad, aligning_slip_limit: 10 deg}
 damper: {topology: boeing, kind: hydraulic}
 envelope: {speed: {min: 5 m/s, max: 60 m/s}, vertical_load: 40 kN}
 requirements: {stability_margin: 0.5 1/s, lug_distance: {min: 0.3 m, max: 1.2 m}, reach: {min: 0.1 m, max: 0.5 m}}

@@ -162,8 +162,8 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     """
     if not topologies and not study.variables:
         raise ConfigError(
-            f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
-            f"allowed: {', '.join(optimisable())} (or use 'damperopt analyse')"
+            f"{study.name}: damper.topology: 'rotational' has no design variables with kind '{study.damper.kind}'; allowed: "
+            f"{', '.join(optimisable())}, or kind vane (or use 'damperopt analyse', for kind friction 'damperopt breakout')"
         )
     variants = []
     for topology in topologies or [study.damper.topology]:

@@ -282,8 +282,7 @@ def _onward(seeder: Seeder, found: Found, sign: float, report: Callable[[Orbit],
     for _ in range(MOST_REBUILT):
         along, here = found.along, found.corrected
         metric = along.metric(here.path)
-        ahead = tangent(here, along.conditions(here.path, metric), along.direction, metric, None)
-        ahead = ahead.times(sign if ahead.parameter > 0 else -sign)
+        ahead = tangent(here, metric, None).times(sign)
         more, end, last = follow(along, here, ahead, report)
         orbits += more
         if end != "changed":

@@ -103,6 +103,14 @@ class Question:
             low, high = ends[name]
         return cls(study, design, Axis.of(study, name, low, high), speed or envelope.speed.max, load or max(envelope.loads))
 
+    def at(self, name: str, value: float) -> Question:
+        """With another value of a quantity [SI]."""
+        if name in self.design:
+            return replace(self, design={**self.design, name: value})
+        if name in ("speed", "vertical_load"):
+            return replace(self, **{"speed" if name == "speed" else "load": value})
+        return replace(self, study=self.study.replace(**{name.replace(".", "__"): value}))
+
     def parameters(self, flow: Flow, value: float) -> np.ndarray:
         """Of a flow, at a value of what is varied."""
         given = flow.values(self.design, self.speed, self.load)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,17 +82,11 @@ class Seeder:
 
     def kicker(self, value: float) -> tuple[Kicker, float, float]:
         """Exact motions at a value of what is varied, and the speed [m/s] and load [N] there."""
-        q, name = self.question, self.question.axis.name
-        speed, load = (value if name == key else given for key, given in (("speed", q.speed), ("vertical_load", q.load)))
-        study, design = q.study, dict(q.design)
-        if name in design:
-            design[name] = value
-        elif name not in ("speed", "vertical_load"):
-            study = study.replace(**{name.replace(".", "__"): value})
-        return Kicker(self._simulator(study, design)), speed, load
+        there = self.question.at(self.question.axis.name, value)
+        return Kicker(self._simulator(there.study, there.design)), there.speed, there.load
 
-    def _simulator(self, study: Study, design: dict[str, float]) -> ExactSimulator:
-        key = (study.model_dump_json(), repr(design))
+    def _simulator(self, study: Study, design: Mapping[str, float]) -> ExactSimulator:
+        key = (study.model_dump_json(), repr(dict(design)))
         if self._kept is None or self._kept[0] != key:
             self._kept = key, ExactSimulator(study, design)
         return self._kept[1]

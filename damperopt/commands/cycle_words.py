@@ -102,9 +102,7 @@ def kept(console: Console, branches: Sequence[Branch], limit: float) -> bool:
     """Whether no stable cycle of more yaw [rad] was found and no branch lost; said in words."""
     largest = " ".join(shown(limit, "rad"))
     larger = [orbit for branch in branches for orbit in branch.orbits if orbit.stable and orbit.amplitudes["yaw_angle"] > limit]
-    lost = [
-        branch for branch in branches if "lost" in branch.ends + branch.begins or "another order" in branch.ends + branch.begins
-    ]
+    lost = [branch for branch in branches if branch.lost]
     if larger:
         words = f"[red]not kept[/]: {len(larger)} stable cycles of more than {largest} were found"
     elif lost:

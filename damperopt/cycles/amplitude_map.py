@@ -60,7 +60,7 @@ def amplitude_map(
     for k, value in enumerate(rows):
         branches = from_hopf_points(question.at(second.name, float(value)))
         yaw[k] = largest_stable(branches, columns)
-        lost[k] = any(branch.ends.startswith("lost") for branch in branches)
+        lost[k] = any(branch.lost for branch in branches)
         report(k)
     return AmplitudeMap(question.axis, second, columns, rows, yaw, lost)
 

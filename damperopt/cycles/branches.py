@@ -107,8 +107,10 @@ class Question:
         """With another value of a quantity [SI]."""
         if name in self.design:
             return replace(self, design={**self.design, name: value})
-        if name in ("speed", "vertical_load"):
-            return replace(self, **{"speed" if name == "speed" else "load": value})
+        if name == "speed":
+            return replace(self, speed=value)
+        if name == "vertical_load":
+            return replace(self, load=value)
         return replace(self, study=self.study.replace(**{name.replace(".", "__"): value}))
 
     def parameters(self, flow: Flow, value: float) -> np.ndarray:

@@ -55,6 +55,9 @@ def show_cycles(
         return
     if not branches:
         console.print(f"\n[bold]no Hopf point[/]: {escape(searched)}", soft_wrap=True)
+        ends = [question.rest_is_stable(value) for value in (axis.low, axis.high)]
+        if not any(ends):
+            console.print("Rest is unstable all over it: joints closed, and without friction.", soft_wrap=True)
         console.print(
             "No limit cycle grows out of rest in this range. Cycles that are cut off from rest are not excluded by this: "
             "--from simulation looks for them.",

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import interrupts
 from ..errors import ConfigError
 from .shared import ConfigArgument, DesignOption, OutputOption, all_or_nothing, bar, out, study_and_design
 
@@ -87,11 +86,9 @@ def cycles(
     with all_or_nothing(), bar() as shown:
         task = shown.add_task("orbits", total=None)
 
-        def report(orbit: Any) -> None:
-            interrupts.check()
-            shown.update(task, advance=1)
-
-        branches = (from_hopf_points if begin == "hopf" else from_motions)(question, report)
+        branches = (from_hopf_points if begin == "hopf" else from_motions)(
+            question, lambda orbit: shown.update(task, advance=1)
+        )
     sized = load_result(design).limit_event if design is not None else {}
     show_cycles(out, question, branches, begin, sized)
 
@@ -123,7 +120,6 @@ def _map(question: Any, second: Any, points: int, output: Path | None, name: str
         task = shown.add_task("branches", total=points)
 
         def report(row: int) -> None:
-            interrupts.check()
             shown.update(task, advance=1)
 
         found = amplitude_map(question, second, points, report)
@@ -158,7 +154,6 @@ def _threshold(question: Any, kind: str, points: int, output: Path | None, name:
         task = shown.add_task("speeds", total=points)
 
         def report(found: Any) -> None:
-            interrupts.check()
             shown.update(task, advance=1)
 
         speeds = [axis.low + (axis.high - axis.low) * k / (points - 1) for k in range(points)]

@@ -103,6 +103,12 @@ class Question:
             low, high = ends[name]
         return cls(study, design, Axis.of(study, name, low, high), speed or envelope.speed.max, load or max(envelope.loads))
 
+    def rest_is_stable(self, value: float) -> bool:
+        """Whether small motions die at a value of what is varied, joints closed."""
+        flow = Flow(self.study)
+        A = flow.state_matrix(self.parameters(flow, value))
+        return bool(np.linalg.eigvals(A).real.max() < 0)
+
     def at(self, name: str, value: float) -> Question:
         """With another value of a quantity [SI]."""
         if name in self.design:

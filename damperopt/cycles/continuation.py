@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from .. import interrupts
 from .collocation import Path
 from .floquet import shape
 from .flow import Flow
@@ -136,6 +137,7 @@ def follow(
     orbits: list[Orbit] = []
     walk = _Walk(along, first, ahead)
     for orbit in walk.orbits():
+        interrupts.check()
         report(orbit)
         orbits.append(orbit)
         if len(orbits) >= MOST:

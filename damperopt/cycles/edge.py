@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from .. import interrupts
 from ..errors import ConfigError
 from ..motion.exact import ExactSimulator
 from ..motion.measure import fastest_rate
@@ -110,6 +111,7 @@ class Kicker:
         """A motion stretch by stretch: states (k, n), and whether the model holds to the end of it."""
         time, names, start = self.chunk(speed, load), (*self.simulator.names, "unclosed"), None
         for number in range(most):
+            interrupts.check()
             rows = self.simulator.stretch(speed, load, self.disturbance(size), time, start)
             shown = np.vstack([rows.T, np.zeros(len(rows))])
             if number == 0:

@@ -29,8 +29,8 @@ __all__ = ["Seeder", "from_motions"]
 VALUES = 3
 """Of what is varied, at which motions are looked at, ends included."""
 
-RELEASES = (2e-3, 2e-2, 0.15)
-"""Yaw angles [rad] from which the gear is let go."""
+RELEASES = (("yaw_angle", 2e-3), ("yaw_angle", 2e-2), ("yaw_angle", 0.15), ("bending_angle", 1e-2))
+"""What the gear is let go from [rad]; the last one, where it bends, wakes the lateral mode."""
 
 SETTLED = 1e-3
 """Relative change of the amplitude from stretch to stretch at which a motion is handed to Newton's method."""
@@ -91,11 +91,11 @@ class Seeder:
             self._kept = key, ExactSimulator(study, design)
         return self._kept[1]
 
-    def settled(self, value: float, size: float) -> Found | None:
+    def settled(self, value: float, size: float, name: str = "yaw_angle") -> Found | None:
         """The cycle on which a release settles; None where it dies, leaves the model or does not settle."""
         kicker, speed, load = self.kicker(value)
         largest, before = np.full(self.flow.n, 1e-300), np.zeros(self.flow.n)
-        for states, whole in kicker.stretches(speed, load, size, PATIENCE):
+        for states, whole in kicker.stretches(speed, load, {"release": {name: size}}, PATIENCE):
             sizes = np.ptp(states, axis=0)
             largest = np.maximum(largest, sizes)
             moves = float((sizes / largest).max())
@@ -235,13 +235,15 @@ def from_motions(question: Question, report: Callable[[Orbit], None] = lambda or
 
 
 def _seeds(seeder: Seeder, value: float, branches: Sequence[Branch]) -> Iterator[tuple[Found, str]]:
-    for size in RELEASES:
+    for name, size in RELEASES:
+        if name not in seeder.flow.state_names:
+            continue
         try:
-            found = seeder.settled(value, size)
+            found = seeder.settled(value, size, name)
         except ConfigError:  # the release begins beyond the model
             continue
         if found is not None and not _known(found, branches):
-            yield found, f"motion after a release of {size:g} rad"
+            yield found, f"motion after a release of {name.replace('_', ' ')} {size:g} rad"
     between = seeder.between(value)
     if between is not None and not _known(between, branches):
         yield between, "motion between releases that die and that do not"

@@ -55,16 +55,19 @@ def show_cycles(
         return
     if not branches:
         console.print(f"\n[bold]no Hopf point[/]: {escape(searched)}", soft_wrap=True)
-        ends = [question.rest_is_stable(value) for value in (axis.low, axis.high)]
-        if not any(ends):
-            console.print("Rest is unstable all over it: joints closed, and without friction.", soft_wrap=True)
+        if not question.rest_is_stable([axis.low, axis.high]).any():
+            console.print(
+                "[bold]Rest is unstable[/] all over it, joints closed and without friction: what the gear settles on has no "
+                "beginning in this range; take a wider one, or --from simulation.",
+                soft_wrap=True,
+            )
         console.print(
             "No limit cycle grows out of rest in this range. Cycles that are cut off from rest are not excluded by this: "
             "--from simulation looks for them.",
             soft_wrap=True,
         )
         return
-    stable = [orbit for branch in branches for orbit in branch.orbits if orbit.stable]
+    stable = [orbit for branch in branches for orbit in branch.orbits if orbit.stable and not orbit.beyond]
     head = f"[bold]{len(branches)} branch{'es' * (len(branches) > 1)} of limit cycles[/]: {escape(searched)}"
     console.print(f"\n{head}", soft_wrap=True)
     if stable:
@@ -127,7 +130,11 @@ def show_map(console: Console, found: AmplitudeMap) -> None:
         console.print(f"\n[bold]Largest stable cycle[/]: yaw {number} at {escape(at)}", soft_wrap=True)
     console.print(f"{100 * (found.yaw > 0).mean():.3g} % of the map has one.", soft_wrap=True)
     if found.lost.any():
-        console.print(f"[yellow]{int(found.lost.any(axis=1).sum())} rows have a branch that was lost[/]", soft_wrap=True)
+        console.print(
+            f"[yellow]{100 * found.lost.mean():.3g} % is not known[/]: a branch was lost, or rest is unstable and no branch that "
+            "begins in this range arrives; take a wider one",
+            soft_wrap=True,
+        )
 
 
 def _size(orbit: Orbit) -> str:

@@ -30,7 +30,7 @@ class AmplitudeMap:
     yaw : ndarray
         (k, m) amplitude [rad]; 0 where no stable cycle is found.
     lost : ndarray
-        (k, m) whether a branch of this row ended where it should not, so that larger ones may be missing.
+        (k, m) whether larger ones may be missing: a branch of this row was lost, or rest is unstable and no branch arrives.
     """
 
     x: Axis
@@ -58,20 +58,22 @@ def amplitude_map(
     rows = np.linspace(second.low, second.high, count)
     yaw, lost = np.zeros((count, COLUMNS)), np.zeros((count, COLUMNS), bool)
     for k, value in enumerate(rows):
-        branches = from_hopf_points(question.at(second.name, float(value)))
+        there = question.at(second.name, float(value))
+        branches = from_hopf_points(there)
         yaw[k] = largest_stable(branches, columns)
         lost[k] = any(branch.lost for branch in branches)
+        lost[k] |= (yaw[k] == 0) & ~there.rest_is_stable(columns)
         report(k)
     return AmplitudeMap(question.axis, second, columns, rows, yaw, lost)
 
 
-def largest_stable(branches: Sequence[Branch], values: np.ndarray, quantity: str = "yaw_angle") -> np.ndarray:
+def largest_stable(branches: Sequence[Branch], values: Sequence[float] | np.ndarray, quantity: str = "yaw_angle") -> np.ndarray:
     """Amplitude of the largest stable cycle at values of the parameter, between neighbours of a branch by straight lines.
 
     Parameters
     ----------
     branches : sequence of Branch
-    values : ndarray
+    values : sequence of float
         (m,) [SI]
     quantity : str
 
@@ -80,6 +82,7 @@ def largest_stable(branches: Sequence[Branch], values: np.ndarray, quantity: str
     ndarray
         (m,) [SI]; 0 where none is stable.
     """
+    values = np.asarray(values, float)
     found = np.zeros(len(values))
     for branch in branches:
         for left, right in pairwise(branch.orbits):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -103,11 +103,12 @@ class Question:
             low, high = ends[name]
         return cls(study, design, Axis.of(study, name, low, high), speed or envelope.speed.max, load or max(envelope.loads))
 
-    def rest_is_stable(self, value: float) -> bool:
-        """Whether small motions die at a value of what is varied, joints closed."""
+    def rest_is_stable(self, values: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Whether small motions die at values (m,) of what is varied, joints closed."""
         flow = Flow(self.study)
-        A = flow.state_matrix(self.parameters(flow, value))
-        return bool(np.linalg.eigvals(A).real.max() < 0)
+        A = np.array([flow.state_matrix(self.parameters(flow, float(value))) for value in values])
+        found: np.ndarray = np.linalg.eigvals(A).real.max(axis=1) < 0
+        return found
 
     def at(self, name: str, value: float) -> Question:
         """With another value of a quantity [SI]."""

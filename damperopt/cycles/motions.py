@@ -217,7 +217,9 @@ def _repeated(path: Path) -> tuple[np.ndarray, np.ndarray]:
     return cycle, states
 
 
-def from_motions(question: Question, report: Callable[[Orbit], None] = lambda orbit: None) -> list[Branch]:
+def from_motions(
+    question: Question, report: Callable[[Orbit], None] = lambda orbit: None, values: Sequence[float] | None = None
+) -> list[Branch]:
     """Branches through cycles that motions lead to, joints as they are.
 
     Parameters
@@ -225,10 +227,12 @@ def from_motions(question: Question, report: Callable[[Orbit], None] = lambda or
     question : Question
     report : callable
         Called with each orbit.
+    values : sequence of float or None
+        Of what is varied, at which motions are looked at; None: `VALUES` over the range.
     """
     seeder, axis = Seeder(question), question.axis
     branches: list[Branch] = []
-    for value in np.linspace(axis.low, axis.high, VALUES):
+    for value in np.linspace(axis.low, axis.high, VALUES) if values is None else values:
         for found, words in _seeds(seeder, float(value), branches):
             branches.append(_through(seeder, found, f"{words} at {worded(float(value), axis.unit)}", report))
     return branches

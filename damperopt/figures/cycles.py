@@ -105,7 +105,7 @@ def threshold(found: Sequence[Threshold], kind: str, unit: str, title: str = "")
 
 
 def cycle_map(found: AmplitudeMap, title: str = "") -> Any:
-    """Amplitude of yaw of the largest stable limit cycle over two quantities; white where there is none.
+    """Amplitude of yaw of the largest stable limit cycle over two quantities; white where there is none, grey: not known.
 
     Parameters
     ----------
@@ -121,6 +121,8 @@ def cycle_map(found: AmplitudeMap, title: str = "") -> Any:
     with styled():
         figure, axis = plt.subplots(figsize=(8, 5))
         axis.grid(False)
+        unknown = np.where(found.lost & (found.yaw == 0), 0.7, np.nan)
+        axis.pcolormesh(x, y, unknown, shading="nearest", cmap="gray", vmin=0, vmax=1)
         mesh = axis.pcolormesh(x, y, yaw, shading="nearest", cmap="viridis")
         figure.colorbar(mesh, ax=axis, label=axis_label("Amplitude of yaw", "rad"))
         axis.set_xlabel(axis_label(quantity_words(found.x.name), found.x.unit))

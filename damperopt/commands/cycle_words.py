@@ -131,8 +131,8 @@ def show_map(console: Console, found: AmplitudeMap) -> None:
     console.print(f"{100 * (found.yaw > 0).mean():.3g} % of the map has one.", soft_wrap=True)
     if found.lost.any():
         console.print(
-            f"[yellow]{100 * found.lost.mean():.3g} % is not known[/]: a branch was lost, or rest is unstable and no branch that "
-            "begins in this range arrives; take a wider one",
+            f"[yellow]{100 * found.lost.mean():.3g} % is not known[/]: a branch was lost, or rest is unstable and no branch "
+            "that begins in this range arrives; take a wider one",
             soft_wrap=True,
         )
 

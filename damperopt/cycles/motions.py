@@ -239,6 +239,7 @@ def from_motions(
 
 
 def _seeds(seeder: Seeder, value: float, branches: Sequence[Branch]) -> Iterator[tuple[Found, str]]:
+    all_live = True
     for name, size in RELEASES:
         if name not in seeder.flow.state_names:
             continue
@@ -246,9 +247,10 @@ def _seeds(seeder: Seeder, value: float, branches: Sequence[Branch]) -> Iterator
             found = seeder.settled(value, size, name)
         except ConfigError:  # the release begins beyond the model
             continue
+        all_live &= found is not None
         if found is not None and not _known(found, branches):
             yield found, f"motion after a release of {name.replace('_', ' ')} {size:g} rad"
-    between = seeder.between(value)
+    between = None if all_live else seeder.between(value)
     if between is not None and not _known(between, branches):
         yield between, "motion between releases that die and that do not"
 

@@ -1,4 +1,4 @@
-"""`requirements.largest_limit_cycle`: checked with its play, refused with the play that would do; amplitude maps read branches."""
+"""`requirements.largest_limit_cycle`: checked with its play, refused with the play that would do; amplitude maps."""
 
 import numpy as np
 import pytest

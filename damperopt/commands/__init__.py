@@ -4,6 +4,7 @@ from .analyse import analyse
 from .chart import chart
 from .components import components
 from .cycles import cycles
+from .gains import gains
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -17,6 +18,7 @@ __all__ = [
     "chart",
     "components",
     "cycles",
+    "gains",
     "init",
     "optimise",
     "report",

@@ -33,6 +33,7 @@ def analyse(
     from ..output.tables import write_modes
     from ..proof.certify import certify
     from ..stability.critical import critical_speeds, marginal_throughout
+    from ..stability.fail_safe import passive_rest
     from ..stability.linear import LinearModel
     from ..stability.modes import track_modes
     from ..stability.over_damping import worst_over_damping
@@ -51,6 +52,8 @@ def analyse(
     envelope = study.envelope.speed
     low, high = min(float(grid[0]), envelope.min), max(float(grid[-1]), envelope.max)
     certificates = [certify(study, values, level, model) for level in dict.fromkeys((0.0, margin))]
+    rest = passive_rest(study)
+    off = [] if rest is None else [certify(rest, values, level) for level in dict.fromkeys((0.0, study.fail_safe_margin))]
     critical = [c for load in study.envelope.loads for c in critical_speeds(gear, load, low, high)]
     crossed = [c for c in critical if c.kind == "hopf" and not c.touching]
     form = NormalForm(study) if crossed else None
@@ -62,8 +65,9 @@ def analyse(
         critical=critical,
         worst=worst_over_damping(model, study, values)[0],
         certificates=certificates,
+        fail_safe=off,
         searched=(low, high),
-        wave=shortest_wavelength(study, tables),
+        wave=shortest_wavelength(study, gear),
         marginal=any(marginal_throughout(gear, load, low, high) for load in study.envelope.loads),
         left_out=left_out_by_number(study, values),
         criticality=criticality,

@@ -20,8 +20,10 @@ _HOME = {
     "sweep_figure": "sweep",
     "threshold": "cycles",
     "tornado": "design",
+    "roll": "motion",
     "trajectory": "motion",
     "tyre_over_load": "tyre",
+    "tyre_over_path": "tyre",
     "tyre_over_slip": "tyre",
 }
 """Module of each public function; that of a chart is `chart.chart`, that of a linkage `linkage.linkage`."""

@@ -11,7 +11,7 @@ from ..errors import ConfigError
 from ..expressions.corners import Switch, Switched
 from ..expressions.dae import DAE
 
-__all__ = ["FRICTIONS", "grip_of", "one_friction"]
+__all__ = ["FRICTIONS", "grip_of", "one_friction", "slopes_of"]
 
 FRICTIONS = ("friction", "damper friction")
 """Corners at which the motion sticks: of the strut, and of a damper."""
@@ -35,8 +35,14 @@ def grip_of(dae: DAE, friction: Switch | None) -> Any:
     if friction is None:
         return ca.SX.zeros(3 + dae.x.numel())
     rate = ca.SX(friction.argument)
-    slope = ca.jacobian(rate, dae.x)
-    if dae.z.numel():
-        slope -= ca.jacobian(rate, dae.z) @ ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ ca.jacobian(dae.alg, dae.x)
+    slope = slopes_of(dae, rate)
     change = slope @ dae.ode
     return ca.vertcat(rate, ca.substitute(change, friction.mode, 0), -ca.jacobian(change, friction.mode), slope.T)
+
+
+def slopes_of(dae: DAE, rows: Any) -> Any:
+    """d rows/dx, with the unknowns that go with x."""
+    if not dae.z.numel():
+        return ca.jacobian(rows, dae.x)
+    by_unknowns = ca.jacobian(rows, dae.z) @ ca.inv_minor(ca.jacobian(dae.alg, dae.z))
+    return ca.jacobian(rows, dae.x) - by_unknowns @ ca.jacobian(dae.alg, dae.x)

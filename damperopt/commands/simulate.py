@@ -44,6 +44,7 @@ def simulate(
     from ..motion.question import output_points, posed
     from ..motion.simulate import Simulator
     from ..motion.trajectory import motion_of
+    from ..optimum.left_out import left_out_by_number
     from ..output.folder import run_folder, write_run
     from ..output.tables import write_motion, write_trajectory
     from ..quantities.record import Force, Speed, Time
@@ -89,7 +90,8 @@ def simulate(
     write_run(folder, write)
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
     sized = load_result(design).limit_event if design is not None else {}
-    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    left_out = left_out_by_number(study, study.start if values is None else values)
+    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized, left_out)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

@@ -218,7 +218,7 @@ def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) ->
     Linkage
     """
     damper = study.damper
-    link = damper.linkage(design, study.material.youngs_modulus, stroke)
+    link = damper.linkage_of(study, design, stroke)
     if damper.ROTARY:
         return replace(link, series=damper.series(design))
     parts = [part for part in damper.elastic(design, study, stroke) if damper.compliance.is_sized(part.part)]

@@ -20,7 +20,7 @@ from .strut import ShockStrut
 __all__ = ["Gear", "Names"]
 
 EXAMPLE = {
-    "gas": {"pressure": "1.2 MPa", "area": "0.012 m^2", "volume": "0.005 m^3", "exponent": "1.1"},
+    "gas": {"pressure": "1.2 MPa", "area": "0.012 m^2", "volume": "0.005 m^3", "exponent": 1.1},
     "travel": "0.3 m",
 }
 

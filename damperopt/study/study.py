@@ -75,6 +75,12 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        cycle = self.requirements.largest_limit_cycle if self.requirements else None
+        for i, speed in enumerate(cycle.speeds or () if cycle else ()):
+            low, high = self.envelope.speed.min, self.envelope.speed.max
+            if not low <= speed <= high:
+                allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
+                raise refuse(f"requirements.largest_limit_cycle.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
         for load in self.envelope.samples(LOADS):
             if words := self.beyond_data(load):
                 allowed = "loads that tyre and strut have data for"
@@ -132,9 +138,9 @@ class Study(Record):
         at_rest = {state.name: 0.0 for state in self.gear.states()}
         return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
 
-    def beyond_data(self, load: float) -> str:
-        """Why tyre or strut has no answer at a load on the gear [N], in words; empty where both have one."""
-        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load)
+    def beyond_data(self, load: float, stroke: float | None = None) -> str:
+        """Why tyre or strut has no answer at a load on the gear [N], and a stroke [m] if it is not in balance; else nothing."""
+        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load, stroke)
         return strut or next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
 
     @property

@@ -190,7 +190,7 @@ def test_saturation_is_simulated():
     assert np.abs(small["yaw_angle"][-50:]).max() < 0.5 * np.abs(small["yaw_angle"]).max()
     large = {"kick": {"yaw_rate": 6.0}}
     exact = simulate_exactly(study, speed=40.0, disturbance=large, duration=0.6, points=301)
-    assert np.abs(exact["actuator_torque"]).max() <= 500.0
+    assert np.abs(exact["actuator_torque"]).max() <= 500.0 * (1 + 1e-12)  # rounding between output times
     assert np.abs(exact["yaw_angle"][-50:]).max() > np.abs(exact["yaw_angle"][:50]).max()
     rounded = study.replace(damper__control__smoothing=1e-4)
     smooth = simulate(rounded, speed=40.0, disturbance=large, duration=0.6)

@@ -53,7 +53,7 @@ def test_gas_in_balance():
 def test_gear_at_a_load_is_the_gear_with_its_numbers(main_gear):
     """l_g, k_delta, I_x and gamma written down by hand for 100 kN; without a strut they are the numbers of a study."""
     tables = {
-        "bending_stiffness": {"load": [20e3, 120e3, 200e3], "value": [5e6, 7e6, 7.5e6]},
+        "bending_stiffness": {"stroke": [0.05, 0.25, 0.35], "value": [5e6, 7e6, 7.5e6]},
         "caster_length": {"load": [20e3, 180e3], "value": [0.1, 0.14]},
     }
     strut = {"stroke": {"load": [20e3, 100e3, 200e3], "value": [0.05, 0.21, 0.35]}, "moving_mass": 40.0, **tables}
@@ -108,6 +108,11 @@ def test_torsion_over_load_stands_in_front_of_the_linkage_or_in_the_place_of_the
         ),
         ({"stroke": {"load": [1e3, 2e5], "value": [0.3, 0]}}, "gear.strut.stroke.value: strokes that fall with the load"),
         ({"stroke": {"load": [1e3, 1e5], "value": [0, 0.3]}}, "150 kN is beyond the table of gear.strut.stroke, 1 to 100 kN"),
+        ({**STRUT, "bending_stiffness": {"value": [1, 2]}}, "gear.strut.bending_stiffness: neither load nor stroke"),
+        (
+            {**STRUT, "bending_stiffness": {"stroke": [0, 0.3], "value": [1e6, 2e6]}},
+            "150 kN is beyond the table of gear.strut.bending_stiffness, 0 to 300 mm, with a stroke of 355.6 mm",
+        ),
         ({**STRUT, "lateral_stiffness": {"load": [1e3, 2e5], "value": [1e6, 2e6]}}, "gear.strut.lateral_stiffness: gear.kind"),
     ],
 )

@@ -1,6 +1,7 @@
 """Commands of the command line, a file each."""
 
 from .analyse import analyse
+from .breakout import breakout
 from .chart import chart
 from .components import components
 from .optimise import optimise
@@ -13,6 +14,7 @@ from .tyre import tyre
 
 __all__ = [
     "analyse",
+    "breakout",
     "chart",
     "components",
     "init",

@@ -106,4 +106,6 @@ class Gear(Record):
         friction = "dry friction of the strut (gear.friction)"
         if self.friction is not None:
             friction = "the dry friction of the strut: simulate has it"
-        return (friction, "motion of the shock strut: its stroke is frozen")
+        drag = getattr(self, "drag", None)  # of kinds that have it in their equations
+        grip = () if drag is None else drag.leaves_out()
+        return (friction, *grip, "motion of the shock strut: its stroke is frozen")

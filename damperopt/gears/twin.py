@@ -80,7 +80,9 @@ class Twin(YawBending):
         wheel = one.wheel
         assert wheel is not None
         total = replace(wheel, load=2 * wheel.load)
-        both = Contact((), one.side_force + other.side_force, one.aligning_moment + other.aligning_moment, wheel=total)
+        force, moment = one.side_force + other.side_force, one.aligning_moment + other.aligning_moment
+        deflection = (one.deflection + other.deflection) / 2  # each under half of the drag
+        both = Contact((), force, moment, deflection=deflection, wheel=total)
         scrub = 2 * axle.deflection_stiffness * axle.half_track * u
         motion = super().rates(x, (both,), damper, yaw_torque - scrub * cos(self.rake_angle), corners)
         bending = motion.rates["bending_rate"] - axle.roll_stiffness * delta / self.lateral.inertia

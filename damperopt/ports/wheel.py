@@ -63,6 +63,8 @@ class Contact:
         Backwards [N].
     outputs : mapping of str to Expr
         Other quantities by declared name [SI].
+    deflection : Expr
+        Of the tyre on the ground against its wheel, in the direction of the side force, were it standing [m].
     wheel : Wheel or None
         The wheel that it belongs to: gears read load and speed from it.
     """
@@ -72,4 +74,5 @@ class Contact:
     aligning_moment: Expr
     drag: Expr = 0
     outputs: Mapping[str, Expr] = field(default_factory=dict)
+    deflection: Expr = 0
     wheel: Wheel | None = None

@@ -78,6 +78,7 @@ class Study(Record):
             if words := self.beyond_tyre(load):
                 allowed = "loads that the tyre has data for"
                 raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
+        self._braked_on_ground()
         self._certain_enough()
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
@@ -94,6 +95,20 @@ class Study(Record):
                     f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def _braked_on_ground(self) -> None:
+        """A steady drag beyond what the tyres can hold is none: the wheels slide."""
+        drag, gear = getattr(self.gear, "drag", None), self.gear
+        if drag is None:
+            return
+        for load in self.envelope.samples(LOADS):
+            peaks = [self.tyre.peaks(own, self.tyre.pressure) for own in self.wheel_loads(load)]
+            found, most = (
+                drag.braking(gear.wheel_radius) + drag.rolling(load),
+                sum(p.side_force for p in peaks if p is not None),
+            )
+            if None not in peaks and not found < most:
+                raise refuse("gear.drag", f"{found:g} N at a load of {load:g} N", f"less than {most:g} N, which the tyres hold")
 
     def _certain_enough(self) -> None:
         """What uncertain damping does not go with."""

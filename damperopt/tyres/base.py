@@ -189,6 +189,10 @@ class ContactLine(Record):
         """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
         return self
 
+    def side_stiffness(self, linear: Linear) -> Expr:
+        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma)."""
+        return linear.cornering_stiffness / (linear.half_contact_length + linear.relaxation_length)
+
     def least_wave(self) -> float:
         """Contact lengths per wavelength of the motion below which this line is doubtful."""
         return 3.0
@@ -317,4 +321,5 @@ class Tyre(Record):
         M_z = law.moment(alpha_M, wheel.load, self.pressure, corners)
         M_kappa = self.tread_width_moment * wheel.swivel_rate / wheel.speed
         outputs = {"slip_angle": alpha_F, "side_force": F_y, "aligning_moment": M_z}
-        return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, wheel=wheel)
+        deflection = F_y / self.contact.side_stiffness(linear)
+        return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, deflection=deflection, wheel=wheel)

@@ -54,7 +54,7 @@ def breakout(
     rows: list[dict[str, Any]] = []
     for text, own in at_pressures:
         for words, disturbance in disturbances:
-            found = least_breakout(own, disturbance, V, at_load, seconds)
+            found = least_breakout(own, disturbance, V.tolist(), at_load, seconds)
             rows.append({"pressure": text, "disturbance": words, "speed [m/s]": found.speed, "breakout [N m]": found.torque})
             out.print(_sentence(own, text, words, found.torque, found.speed), soft_wrap=True, markup=False)
     listed = ", ".join(f"{speed:.3g}" for speed in V)

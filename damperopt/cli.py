@@ -17,6 +17,8 @@ with interrupts.at_once():
         breakout,
         chart,
         components,
+        cycles,
+        gains,
         init,
         optimise,
         report,
@@ -40,7 +42,24 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (optimise, report, analyse, simulate, breakout, chart, sweep, tyre, thesis, components, validate, init, schema):
+IN_ORDER = (
+    optimise,
+    report,
+    analyse,
+    simulate,
+    cycles,
+    breakout,
+    chart,
+    sweep,
+    tyre,
+    gains,
+    thesis,
+    components,
+    validate,
+    init,
+    schema,
+)
+for command in IN_ORDER:
     app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 

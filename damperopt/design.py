@@ -22,6 +22,7 @@ from .optimum.answer import (
     not_checked,
     nothing_yet,
     start_result,
+    worst_of,
 )
 from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution
@@ -43,6 +44,7 @@ from .results import (
     MassResult,
     Verification,
 )
+from .stability.fail_safe import passive_rest
 from .study.components import optimisable
 from .study.study import Study
 from .workers import executor
@@ -252,13 +254,20 @@ def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
 
 
 def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
-    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it."""
+    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it.
+
+    With an actuator, so do the points that the proof without it finds.
+    """
     study, model = solver.problem.study, solver.problem.model
+    rest = passive_rest(study)
     certificate = certify(study, best.solution.design, model=model)
     for _ in range(REFINEMENTS):
-        if (place := certificate.place) is None:
+        places = [] if certificate.place is None else [certificate.place]
+        off = None if rest is None else certify(rest, best.solution.design).place
+        places += [] if off is None else [(*off[:2], -off[2])]
+        if not places:
             break
-        again = held_again(solver, best, [place])
+        again = held_again(solver, best, places)
         if not again.solved:
             break
         best, certificate = again, certify(study, again.solution.design, model=model)
@@ -305,13 +314,16 @@ def _checked(
     base: DesignResult,
 ) -> DesignResult:
     """Result of the best local optimum, with proof and verification."""
-    problem, solution, worst = solver.problem, best.solution, best.worst[0]
+    problem, solution, worst = solver.problem, best.solution, worst_of(best)
     study = problem.study
     grid = check_grid(study, solution.design, model=problem.model)
     agreeing = sum(s.solution.objective <= solution.objective * (1 + SAME_MASS) for s in solved)
-    failures = []
+    failures, rest = [], passive_rest(study)
+    fail_safe = None if rest is None else certify(rest, solution.design)
     if not certificate.proved:
         failures.append(f"the exact certificate does not hold: {certificate.reason}")
+    if fail_safe is not None and not fail_safe.proved:
+        failures.append(f"the exact certificate with the actuator off does not hold: {fail_safe.reason}")
     if not grid.passed:
         failures.append(
             f"an eigenvalue has the real part {grid.worst.abscissa:.6g} 1/s at {grid.worst.speed:.6g} m/s, "
@@ -353,6 +365,8 @@ def _checked(
     weights, warm = decided_by(constraints, mass), damping_over_temperature(study, solution.design)
     viscous = problem.units.get(study.damper.VISCOUS, "")
     message = f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
+    if fail_safe is not None:
+        message += f", and with the actuator off with the margin {fail_safe.margin:g} 1/s"
     if weights:
         message += f"; the mass is decided by {next(iter(weights))}"
     message = "; ".join(failures) or message
@@ -374,6 +388,7 @@ def _checked(
             "loads": load_rows(study, solution.design, simulated),
             "margins": rows,
             "certificate": certificate,
+            "fail_safe": fail_safe,
             "verification": verification,
             "sensitivities": sensitivities(problem, solution, solver.decay if decay else None),
         }

@@ -4,6 +4,8 @@ from .analyse import analyse
 from .breakout import breakout
 from .chart import chart
 from .components import components
+from .cycles import cycles
+from .gains import gains
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -17,6 +19,8 @@ __all__ = [
     "breakout",
     "chart",
     "components",
+    "cycles",
+    "gains",
     "init",
     "optimise",
     "report",

@@ -34,6 +34,7 @@ def chart(
     from ..charts.chart import chart as trace_chart
     from ..charts.maps import filled_map
     from ..charts.plane import Plane
+    from ..charts.waves import boundary_wavelength
     from ..output.folder import run_folder, write_run
     from ..output.gallery import write_chart_files
     from ..quantities.record import Force, Rate, Speed
@@ -71,4 +72,5 @@ def chart(
             filled = filled_map(plane, fill)  # type: ignore[arg-type]  # one of the two, checked above
         write_run(folder, lambda place: write_chart_files(place, record, filled, neutral))
     summary.show_chart(out, record)
+    summary.show_contact_line(out, study, boundary_wavelength(study, record))
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)

@@ -51,13 +51,16 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     console.print(table)
     _show_loads(console, result)
     console.print(worst_words(worst, certificate))
-    proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
-    loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
-    console.print(
-        f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
-        f"{certificate.speed[1]:g} m/s, {loads} kN{dampings(certificate)}",
-        soft_wrap=True,
-    )
+    for proof, off in ((certificate, ""), (result.fail_safe, ", actuator off")):
+        if proof is None:
+            continue
+        proved = "[green]proved[/]" if proof.proved else "[red]NOT proved[/]"
+        loads = f"{' to ' if proof.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in proof.loads)
+        console.print(
+            f"Exact certificate{off}: {proved}: margin {proof.margin:g} 1/s at every speed from {proof.speed[0]:g} to "
+            f"{proof.speed[1]:g} m/s, {loads} kN{dampings(proof)}",
+            soft_wrap=True,
+        )
     console.print(escape(next(iter(result.covers or covers(study)))), soft_wrap=True)
     console.print(
         f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "

@@ -110,13 +110,17 @@ def validate(files: Annotated[list[Path], typer.Argument(metavar="CONFIG...", he
 
 def _of_study(text: str, file: Path) -> tuple[str, list[str]]:
     """A study in words, and what is not usual about it."""
+    from ..study.cavitation import cavitation
     from ..study.config import loads
     from ..study.plausibility import implausible
 
     study = loads(text, str(file))
     bounds = [study.variable(name) for name in study.variable_names]
     fixed = study.start if all(variable.min == variable.max for variable in bounds) else None
-    return f"{study.name}, {study.damper.topology}, {study.gear.kind}", [str(number) for number in implausible(study, fixed)]
+    words = [str(number) for number in implausible(study, fixed)]
+    if fixed is not None:
+        words += filter(None, [cavitation(study, fixed)])
+    return f"{study.name}, {study.damper.topology}, {study.gear.kind}", words
 
 
 def _of_sweep(file: Path) -> tuple[str, list[str]]:

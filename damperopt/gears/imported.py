@@ -107,6 +107,7 @@ class Imported(Gear):
         Output("lateral_displacement", "m", "of the contact centre by the structure, -H_eta q"),
     )
     STATES: ClassVar[tuple[State, ...]] = Yaw.STATES
+    STROKES: ClassVar[bool] = False
 
     kind: Literal["imported"]
     yaw_inertia: Inertia | None = None  # type: ignore[assignment]  # always filled in from the matrices

@@ -137,8 +137,8 @@ def posed(
     for name, value, unit in (("speed", speed, "m/s"), ("load", load, "N"), ("duration", duration, "s")):
         if not 0 < value < np.inf:
             raise ConfigError(f"{name}: found {value}; allowed: a positive number in {unit}")
-    if words := study.beyond_tyre(load):
-        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that the tyre has data for")
+    if words := study.beyond_data(load):
+        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that tyre and strut have data for")
     try:
         disturbance = Disturbance.model_validate(disturbance)
     except ValidationError as error:

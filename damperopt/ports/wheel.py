@@ -33,6 +33,8 @@ class Wheel:
         [rad]
     index : int
         Of this wheel among those of the gear.
+    load_rate : Expr
+        Of F_z along a history [N/s].
     """
 
     speed: Expr
@@ -45,6 +47,7 @@ class Wheel:
     forward_rate: Expr = 0
     camber: Expr = 0
     index: int = 0
+    load_rate: Expr = 0
 
 
 @dataclass(frozen=True)

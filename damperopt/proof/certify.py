@@ -39,11 +39,6 @@ __all__ = ["certify"]
 Q: TypeAlias = flint.fmpq
 ONE = Q(1)
 
-NO_RANGE = (
-    "not proved: the forces of this tyre are no polynomial in the load, and a proof over a range of loads needs one; "
-    "a list of loads can be proved load by load"
-)
-
 MARGINAL = 1e-9
 """Relative to the largest root: an abscissa that is the margin but for the rounding of eigenvalues."""
 
@@ -79,7 +74,7 @@ def certify(
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
     model = LinearModel(study) if model is None else model
-    if model.structure is not None:
+    if model.structure is not None or (envelope.load_is_range and model.powers.load is None):
         return certify_delay(study, design, margin, model)
     method = "bernstein" if envelope.load_is_range else "sturm"
 
@@ -88,8 +83,6 @@ def certify(
         verdict: Any = "proved" if proved else "undecided" if point is None else "refuted"
         return Certificate(proved, margin, speeds, loads, method, point, reason, boxes, verdict)
 
-    if envelope.load_is_range and model.powers.load is None:
-        return outcome(None, NO_RANGE, proved=False)
     if interval := Interval.of(study):
         return _over_damping(study, model, design, margin, interval)
     family = _Family(study, model, design, margin)

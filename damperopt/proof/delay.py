@@ -11,6 +11,8 @@ Claim: no root of D(lambda) lies right of Re = -mu, for all speeds V and loads F
 Where the damping is uncertain, it takes the place of F_z, at one load after the other. Where a box cannot be freed of 0, roots
 are counted near it: N > 0 at one point is a proof that the margin is missed there. The verdict is else left open. Vehicle
 speed and load are constants in each motion (frozen). No part of the optimiser is used.
+
+A gear whose tyre has states alone is taken as a structure without wheels, where it is no polynomial in the load.
 """
 
 from __future__ import annotations
@@ -32,6 +34,7 @@ from .boxes import Box, Strips
 from .damping import Interval
 from .quasi import OverDamping, Quasipolynomial
 from .rationals import decimal
+from .varying import structure_of
 
 __all__ = ["certify_delay", "roots_to_the_right"]
 
@@ -51,11 +54,6 @@ FREQUENCIES, SPEEDS, LOADS = 4, 2.0, 1.5
 
 LOOKED_AT = 48
 """Speeds at each load where eigenvalues hint at a point to count at; a hint proves nothing."""
-
-NO_RANGE = (
-    "not proved: gear or damper are no polynomial in the load, and a proof over a range of loads needs one; "
-    "a list of loads can be proved load by load"
-)
 
 ASIDE = (0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from a box that keeps its 0 at which roots are counted."""
@@ -91,8 +89,7 @@ def certify_delay(study: Study, design: Mapping[str, float], margin: float, mode
         interval = Interval.of(study)
         if interval is None:
             return _Proof(study, design, margin, model).certificate()
-        assert model.structure is not None
-        whole, boxes = Quasipolynomial(study, model.structure, design), 0
+        whole, boxes = Quasipolynomial(study, structure_of(model), design), 0
         for load in study.envelope.loads:
             found = _OverDamping(study, design, margin, model, whole.over_damping(decimal(load)), interval).certificate()
             boxes += found.boxes
@@ -132,18 +129,15 @@ class _Proof:
         model: LinearModel,
         characteristic: Quasipolynomial | OverDamping | None = None,
     ):
-        assert model.structure is not None
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
-        self._strips = Strips(characteristic or Quasipolynomial(study, model.structure, design), margin)
-        self._boxes, self._polynomial = 0, model.structure.powers.load is not None
+        self._strips = Strips(characteristic or Quasipolynomial(study, structure_of(model), design), margin)
+        self._boxes = 0
         speed, loads = study.envelope.speed, [decimal(F) for F in study.envelope.loads]
         self._speeds = decimal(speed.min), decimal(speed.max)
         self._spans = [(loads[0], loads[-1])] if study.envelope.load_is_range else [(F, F) for F in loads]
 
     def certificate(self) -> Certificate:
         """The three steps for every load or the range of them."""
-        if self._envelope.load_is_range and not self._polynomial:
-            return self._outcome("undecided", None, None, NO_RANGE)
         for V, F in self._hints():
             if self.count(V, F):
                 return self._refuted(V, F)

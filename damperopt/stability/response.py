@@ -106,7 +106,8 @@ class Structure:
         )
         system = ca.densify(f_v - f_z @ ca.inv_minor(g_z) @ g_v if dae.z.numel() else f_v)
         self.system = ca.Function("system", [dae.design, dae.speed, dae.load, dae.data], [system])
-        self.design_names, self.powers = dae.design_names, united(study.gear, study.damper, _ground(study))
+        parts = study.gear, study.damper, study.damper.actuator, _ground(study)
+        self.design_names, self.powers = dae.design_names, united(*parts)
         self._data = ca.DM(data_values(study))
         self.footprint = None
         line: Any = symbols.study.tyre.contact

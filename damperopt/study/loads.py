@@ -80,6 +80,10 @@ class GroundLoads(Record):
     """Cases by name: true or false, or numbers other than the rule's, or cases of one's own (kind: given); a list names the
     only ones that count."""
 
+    def constants(self) -> tuple[str, ...]:
+        """The numbers of a rule."""
+        return ("cases",)
+
     @model_validator(mode="after")
     def _enabled_with_numbers(self) -> Self:
         for name, case in self.cases.items():

@@ -102,6 +102,8 @@ class Requirements(Record):
 
     stability_margin: Rate
     """Spectral abscissa <= -stability_margin at every speed and load [1/s]."""
+    fail_safe_margin: Rate | None = None
+    """The same with the actuator of `damper.control` off, proved for itself [1/s]; left out: 0."""
     damping_ratio: Annotated[float, Quantity("1", above=0, below=1, example="0.05")] | None = None
     """Least damping ratio of the yaw mode at every speed and load [1]; left out: none is asked for."""
     decay: DecayRequirement | None = None

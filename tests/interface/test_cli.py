@@ -58,7 +58,7 @@ def test_optimise_writes_a_complete_run_folder(configs, tmp_path):
     assert (result["schema_version"], result["verdict"]) == (2, "proved")
     assert result["status"] == "solved"
     assert result["mass"]["total"] == pytest.approx(sum(result["mass"]["parts"].values()))
-    sizes = {"A_link", "A_piston", "rod_diameter", "s_damper"}  # of the elastic parts
+    sizes = {"A_link", "I_hinge", "A_piston", "rod_diameter", "s_damper"}  # of the elastic parts
     assert set(result["design"]) == {"c_lambda", "k_lambda", "L", "gamma", *sizes}
     assert result["certificate"]["proved"]
     assert result["verification"]["passed"]

@@ -92,3 +92,24 @@ def test_fail_safe_is_proved_and_the_current_is_simulated(study):
         ends.append(np.degrees(np.abs(motion["yaw_angle"][motion.time > 0.3]).max()))
     assert ends[0] == pytest.approx(0.52, abs=0.02)
     assert ends[1] == pytest.approx(0.0023, abs=3e-4)
+
+
+@pytest.mark.parametrize("study", ["landing_roll"], indirect=True)
+def test_a_landing_roll_passes_through_shimmy(configs, study):
+    """Bands and peaks of the page on the landing roll."""
+    history = damperopt.read_history(configs / "histories" / "landing_roll.csv")
+    frozen = damperopt.frozen_along(study, None, history)
+    touchdown, roll = frozen.beyond(0.0)
+    assert touchdown == pytest.approx((0.097, 0.180), abs=2e-3)
+    assert np.interp(roll, frozen.time, frozen.speed) == pytest.approx((61.5, 26.1), abs=0.1)
+    assert frozen.abscissa.max() == pytest.approx(1.329, abs=2e-3)
+    driven = {"unbalance": {"moment": 0.005}}
+    motion = damperopt.simulate_along(study, history=history, disturbance=driven)
+    peak = np.abs(motion["yaw_angle"]).argmax()
+    assert np.degrees(abs(motion["yaw_angle"][peak])) == pytest.approx(6.09, abs=0.02)
+    assert motion["speed"][peak] == pytest.approx(26.7, abs=0.3)
+    assert np.abs(motion["damper_force"]).max() == pytest.approx(4064, rel=5e-3)
+    data = study.model_dump(exclude_none=True)
+    del data["gear"]["strut"]
+    assert worst(study, study.start, 100e3)[0] == pytest.approx(1.66, abs=0.02)
+    assert worst(damperopt.Study.model_validate(data), study.start, 100e3)[0] == pytest.approx(8.71, abs=0.02)

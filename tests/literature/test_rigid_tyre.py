@@ -32,6 +32,7 @@ def test_stiff_tyre_of_a_point_is_rigid():
     for length in (1e-2, 1e-3, 1e-4):
         tyre = {
             "law": "stiffness",
+            "contact": "leading_point",
             "half_contact_length": length / 10,
             "relaxation_length": length,
             "cornering_stiffness": 1e8 / length,

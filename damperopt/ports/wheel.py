@@ -33,6 +33,8 @@ class Wheel:
         [rad]
     index : int
         Of this wheel among those of the gear.
+    pressure : Expr or None
+        Of its tyre [Pa]; None: that of the study.
     load_rate : Expr
         Of F_z along a history [N/s].
     """
@@ -47,6 +49,7 @@ class Wheel:
     forward_rate: Expr = 0
     camber: Expr = 0
     index: int = 0
+    pressure: Expr = None
     load_rate: Expr = 0
 
 

@@ -54,7 +54,8 @@ class _Pushed:
         self.inputs += [F, M]
         self.wheels.append(wheel)
         M_kappa = self.tyre.tread_width_moment * wheel.swivel_rate / wheel.speed
-        linear = Linear(*self.tyre.linear(wheel.load, self.tyre.pressure))
+        own = self.tyre.of_wheel(wheel)
+        linear = Linear(*own.linear(wheel.load, own.pressure))
         return Contact((), F, M + M_kappa, deflection=F / self.tyre.contact.side_stiffness(linear), wheel=wheel)
 
 
@@ -146,7 +147,8 @@ class Structure:
 
 
 def _numbers(line: StringLine, tyre: Any, wheel: Wheel) -> ca.SX:
-    part = line.footprint(Linear(*tyre.linear(wheel.load, tyre.pressure)))
+    own = tyre.of_wheel(wheel)
+    part = line.footprint(Linear(*own.linear(wheel.load, own.pressure)))
     values = (getattr(part, field.name) for field in fields(part))
     return ca.horzcat(*(ca.SX(x) for value in values for x in (value if isinstance(value, tuple) else (value,))))
 

@@ -22,8 +22,8 @@ __all__ = ["Breakout", "comes_to_rest", "least_breakout", "with_breakout"]
 CLOSE = 1.03
 """Ratio of a breakout that suffices to one that does not, at which the search ends."""
 
-SMALLEST, DOUBLINGS = 1 / 64, 16
-"""The search begins with this part of the study's breakout, and doubles it at most so often."""
+SMALLEST, LEAST, DOUBLINGS = 1 / 64, 0.02, 16
+"""The search begins with this part of the study's breakout, or so many newton or N m, and doubles it at most so often."""
 
 POINTS, AT_THE_END = 400, 40
 """Of a trajectory; the yaw rate is exactly 0 at the last ones where the wheel has come to rest."""
@@ -117,7 +117,8 @@ def least_breakout(
             progress(speed, torque)
         return comes_to_rest(with_breakout(study, torque), speed, load, disturbance, duration)
 
-    torque, decides = max(at_least, float(study.damper.breakout(0.0)) * SMALLEST), float(speeds[0])
+    own = float(study.damper.breakout(0.0)) * SMALLEST
+    torque, decides = max(at_least, own, LEAST * (study.damper.breakout_lever or 1.0)), float(speeds[0])
     for speed in np.asarray(speeds, float).tolist():
         if rests(torque, speed):
             continue

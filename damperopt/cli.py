@@ -14,6 +14,7 @@ with interrupts.at_once():
 
     from .commands import (
         analyse,
+        breakout,
         chart,
         components,
         cycles,
@@ -47,6 +48,7 @@ IN_ORDER = (
     analyse,
     simulate,
     cycles,
+    breakout,
     chart,
     sweep,
     tyre,

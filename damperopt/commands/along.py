@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..motion.history import frozen_along, simulate_along
+from ..motion.history import frozen_along, posed_along, simulate_along
 from ..motion.roll import Roll, Stretch, roll_of
 from ..motion.trajectory import Trajectory
 from ..output.folder import run_folder, write_run
 from ..output.tables import write_roll, write_trajectory
 from ..quantities.shown import scale
 from ..study.disturbances import Disturbance
-from ..study.history import read_history
+from ..study.history import History, read_history
 from ..study.study import Study
 from . import summary
 from .shared import all_or_nothing, out
@@ -58,6 +58,9 @@ def run_along(
     history = read_history(file)
     own = any(history.column("yaw_torque") or [0.0])
     start = disturbance if asked or not own else None
+    # a question that is not well posed leaves no folder behind
+    posed_along(study, values or study.start, history, start)
+    folder = run_folder(output, f"{stem}-simulation")
     with all_or_nothing():
         motion = simulate_along(study, values, history=history, disturbance=start, engine=engine)
         frozen = frozen_along(study, values, history)
@@ -74,9 +77,10 @@ def run_along(
         write_roll(place / "motion.json", motion, found, start, values or study.start)
         figures.save_each({"trajectory": lambda: figures.roll(motion, found, frozen, f"after {after}")}, place)
 
-    folder = run_folder(output, f"{stem}-simulation")
     write_run(folder, write)
     _show(motion, found, after, sized)
+    if words := _beyond(study, history):
+        out.print(words, soft_wrap=True)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 
@@ -90,7 +94,9 @@ def _show(motion: Trajectory, found: Roll, after: str, sized: Mapping[str, float
         if name in found.peaks:
             peak, unit = found.peaks[name], motion.units[name]
             limit, (words, factor) = sized.get(name), scale(unit)
-            beside = "" if limit is None else f"{limit:.4g} {unit}" + (" [red]exceeded[/]" if peak.value > limit else "")
+            beside = (
+                "" if limit is None else f"{factor * limit:.4g} {words}" + (" [red]exceeded[/]" if peak.value > limit else "")
+            )
             place = f"{peak.time:.4g}", f"{peak.speed:.4g}", f"{peak.load / 1e3:.4g}"
             own = f"{factor * peak.value:.4g}", words
             table.add_row(name.replace("_", " "), *own, *place, *((beside,) if sized else ()))
@@ -107,6 +113,21 @@ def _show(motion: Trajectory, found: Roll, after: str, sized: Mapping[str, float
         "That is no proof for a roll: growth takes time, and speed and load change meanwhile. Each motion is one simulation.",
         soft_wrap=True,
     )
+
+
+def _beyond(study: Study, history: History) -> str:
+    """Where a history leaves the envelope that is proved, in words; empty where it does not."""
+    parts, speed, loads = [], study.envelope.speed, study.envelope.loads
+    for name, unit, per, low, high in (
+        ("speed", "m/s", 1.0, speed.min, speed.max),
+        ("load", "kN", 1e3, min(loads), max(loads)),
+    ):
+        values = history.column(name) or []
+        if min(values) < low or max(values) > high:
+            parts.append(
+                f"{name} {min(values) / per:.4g} to {max(values) / per:.4g} {unit} ({low / per:.4g} to {high / per:.4g})"
+            )
+    return f"It leaves the envelope of the study, of which alone a proof speaks: {', '.join(parts)}" if parts else ""
 
 
 def _words(what: str, stretches: tuple[Stretch, ...]) -> str:

@@ -26,6 +26,7 @@ from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from ..tyres.curves import TyreCurves
+from ..tyres.path_response import PathResponse
 from ..tyres.property_file import PropertyFile
 from .cycle_words import show_criticality
 
@@ -91,8 +92,9 @@ def show_motion(
     cycles: int,
     disturbance: str = "",
     sized: Mapping[str, float] = {},
+    left_out: Sequence[str] = (),
 ) -> None:
-    """What a trajectory shows, after what, and beside the loads that the parts were sized for."""
+    """What a trajectory shows, after what, beside the loads that the parts were sized for, and what its model leaves out."""
     console.print(
         f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
     )
@@ -121,6 +123,12 @@ def show_motion(
             shown = number_and_unit(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
             table.add_row(name.replace("_", " "), *shown, *((beside,) if sized else ()))
     console.print(table)
+    _show_left_out(console, left_out)
+
+
+def _show_left_out(console: Console, words: Sequence[str]) -> None:
+    if words:
+        console.print("Left out: " + escape("; ".join(words)), soft_wrap=True, style="dim")
 
 
 def show_analysis(
@@ -203,8 +211,9 @@ def number_and_unit(value: float, unit: str) -> tuple[str, str]:
     return f"{value:.5g}", unit
 
 
-def show_chart(console: Console, record: StabilityChart) -> None:
-    """Families of a chart with the length, kind and frequency of their curves."""
+def show_chart(console: Console, record: StabilityChart, left_out: Sequence[str] = ()) -> None:
+    """Families of a chart with the length, kind and frequency of their curves, and what its model leaves out."""
+    _show_left_out(console, left_out)
     table = Table(box=None, pad_edge=False)
     varied, unit = (record.varied.name, record.varied.unit) if record.varied else ("boundary", "")
     for name in (varied, "curves", "points", "type", "frequency", "corners"):
@@ -255,6 +264,9 @@ def show_claims(console: Console, rows: Sequence[Row]) -> None:
         console.print(f"{form}: {sum(agreed)} of {len(agreed)} agree")
 
 
+SHOWN_WAVES = 50.0, 16.0, 8.0, 4.0, 2.0
+"""Contact lengths per wave at which contact lines are compared."""
+
 TYRE_LOADS = 4
 """Columns of the table of a tyre; the file has more."""
 
@@ -275,6 +287,27 @@ def show_tyre(console: Console, record: TyreCurves, tyre: Any, read: PropertyFil
         factor, unit = scale(column.unit)[1], unit_text(scale(column.unit)[0])
         cells = [rounded(v * factor) if math.isfinite(v) else "-" for v in column.values[shown]]
         table.add_row(name.replace("_", " "), *cells, unit)
+    console.print(table)
+    if record.response is not None:
+        _show_response(console, record.response)
+
+
+def _show_response(console: Console, found: PathResponse) -> None:
+    """How far each contact line is from the exact one, over the wavelength."""
+    columns = [int(np.abs(found.contact_lengths - length).argmin()) for length in SHOWN_WAVES]
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    table.add_column("contact line", no_wrap=True)
+    for at in columns:
+        table.add_column(f"{found.contact_lengths[at]:.3g}", justify="right")
+    table.add_column("within 10 % from", justify="right")
+    for line in list(found.lines)[1:]:
+        worst, least = 100 * found.errors(line).max(axis=0), found.holds_to(line)
+        table.add_row(line, *(f"{worst[at]:.2g} %" for at in columns), f"{least:.3g}" if math.isfinite(least) else "never")
+    console.print(
+        f"Distance of force and moment at {found.load / 1e3:.4g} kN from those of the exact contact line (memory), over "
+        "contact lengths per wave:",
+        soft_wrap=True,
+    )
     console.print(table)
 
 

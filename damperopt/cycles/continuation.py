@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from .. import interrupts
 from .collocation import Path
 from .floquet import shape
 from .flow import Flow
-from .newton import Condition, Corrected, Metric, NoOrbit, Tangent, corrected, phase, tangent
+from .newton import Condition, Corrected, Metric, NoOrbit, Phase, Tangent, corrected, phase, tangent
 from .orbit import Orbit, orbit_of
 
 __all__ = ["Along", "follow", "scales_of"]
@@ -25,6 +26,12 @@ WIDTHS = 20
 
 MOST = 1000
 """Orbits of a branch."""
+
+CAUTIOUS = 0.3
+"""Part of the way to rest by the tangent that a step may go: the branch is back at half of it, half a cycle later."""
+
+AT_REST = 0.01
+"""In `Along.scales`: size of an orbit at which its branch has come back to rest."""
 
 FEW = 3
 """Iterations up to which the next step is longer."""
@@ -67,7 +74,7 @@ class Along:
     low: float
     high: float
     scales: np.ndarray
-    conditions: Callable[[Path, Metric], Sequence[Condition]] = lambda path, metric: [phase(path, metric)]
+    conditions: Callable[[Path, Metric], Sequence[Condition | Phase]] = lambda path, metric: [phase(path, metric)]
     events: bool = False
     changed: Callable[[Path], bool] | None = None
 
@@ -79,6 +86,10 @@ class Along:
     def value(self, path: Path) -> float:
         """Of the parameter on a path."""
         return float(path.parameters[self.flow.names.index(self.name)])
+
+    def size(self, path: Path) -> float:
+        """Of an orbit, in `scales`."""
+        return float(np.sqrt(((path.states / self.scales) ** 2).mean()))
 
     def metric(self, path: Path) -> Metric:
         """Scales on a path: the sizes of its states, but not less than `scales`."""
@@ -126,6 +137,7 @@ def follow(
     orbits: list[Orbit] = []
     walk = _Walk(along, first, ahead)
     for orbit in walk.orbits():
+        interrupts.check()
         report(orbit)
         orbits.append(orbit)
         if len(orbits) >= MOST:
@@ -148,7 +160,7 @@ class _Walk:
             if there is None:
                 self.end = "lost" if along.changed is None else "changed"
                 return
-            if float(np.sum(there.path.states * self.here.path.states / branch.metric.states**2)) < 0:
+            if along.size(there.path) < AT_REST:
                 self.end = "rest"
                 return
             value = along.value(there.path)
@@ -169,10 +181,9 @@ class _Walk:
         """The tangent here, and the orbit a step along it, shortened until there is one."""
         along, here = self._along, self.here
         metric = along.metric(here.path)
-        direction = tangent(here, along.conditions(here.path, metric), along.direction, metric, self._ahead)
-        if direction.along(self._ahead, metric) < 0:
-            direction = direction.times(-1)
+        direction = tangent(here, metric, self._ahead)
         branch = _Step(along, here, direction, metric)
+        step = min(step, CAUTIOUS * _to_rest(here.path, direction, metric))
         while step >= LEAST:
             with suppress(NoOrbit):
                 return branch, (branch.at(step), step)
@@ -184,6 +195,13 @@ class _Walk:
         if self._along.value(self.here.path) != limit:
             with suppress(NoOrbit):
                 yield self._along.orbit(self._along.held(branch.near(limit), limit))
+
+
+def _to_rest(path: Path, direction: Tangent, metric: Metric) -> float:
+    """How far along a tangent the amplitude vanishes; inf where it grows."""
+    change = np.concatenate([stages.reshape(-1, stages.shape[-1]) for stages in direction.stages])
+    towards = float(np.sum(path.states * change / metric.states**2))
+    return float(np.sum((path.states / metric.states) ** 2)) / -towards if towards < 0 else float("inf")
 
 
 @dataclass(frozen=True)
@@ -208,9 +226,7 @@ class _Step:
 
     def slope(self, found: Corrected) -> float:
         """Of the parameter along the branch."""
-        conditions = self.along.conditions(found.path, self.metric)
-        found_direction = tangent(found, conditions, self.along.direction, self.metric, self.direction)
-        return found_direction.parameter * np.sign(found_direction.along(self.direction, self.metric))
+        return tangent(found, self.metric, self.direction).parameter
 
     def special(self, step: float, there: Corrected, before: Orbit, after: Orbit) -> Iterator[Orbit]:
         """Folds, and where multipliers cross the unit circle, between here and a step ahead."""

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from .. import interrupts
 from ..errors import ConfigError
 from ..motion.exact import ExactSimulator
 from ..motion.measure import fastest_rate
 from ..motion.question import refuse_start, valid_part
 
-__all__ = ["SIZES", "Edge", "Fate", "Kicker", "Threshold", "edge", "threshold"]
+__all__ = ["SIZES", "Edge", "Kicker", "Threshold", "edge", "threshold"]
 
 Fate = Literal["dies", "grows", "stays", "leaves"]
-"""Amplitude falls to a part `DEAD`; exceeds `GROWN` times the first; neither within `CHUNKS`; the model is left."""
+"""The yaw angle falls to a part `DEAD` while all else falls too; it exceeds `GROWN` times the first; neither within `CHUNKS`;
+the model is left."""
 
 DEAD, GROWN = 0.05, 1.5
 
@@ -73,6 +75,7 @@ class Kicker:
     def __init__(self, simulator: ExactSimulator, kind: str = "release"):
         self.study, self.kind, self.simulator = simulator.study, kind, simulator
         self.name, self.unit, self.most = SIZES[kind]
+        self._visible = np.array([not state.hidden for state in simulator.gear.states])
 
     def disturbance(self, size: float) -> dict[str, dict[str, float]]:
         """As `Disturbance` takes it."""
@@ -88,25 +91,30 @@ class Kicker:
     def fate(self, speed: float, load: float, size: float) -> tuple[Fate, list[np.ndarray]]:
         """What becomes of a motion, and its states (k, n) stretch by stretch."""
         stretches: list[np.ndarray] = []
-        yaw, first = self.simulator.state_names.index("yaw_angle"), None
-        for states, whole in self.stretches(speed, load, size):
+        yaw = self.simulator.state_names.index("yaw_angle")
+        first, before = np.zeros(0), np.zeros(0)
+        for states, whole in self.stretches(speed, load, self.disturbance(size)):
             stretches.append(states)
-            amplitude = float(np.ptp(states[:, yaw])) / 2
             if not whole:
                 return "leaves", stretches
-            if first is None:
-                first = amplitude
-            elif amplitude <= DEAD * first:
-                return "dies", stretches
-            elif amplitude >= GROWN * first:
+            sizes = np.ptp(states, axis=0)
+            if not first.size:
+                first = sizes
+            elif sizes[yaw] >= GROWN * first[yaw]:
                 return "grows", stretches
+            elif sizes[yaw] <= DEAD * first[yaw] and (sizes <= np.maximum(before, DEAD * first))[self._visible].all():
+                return "dies", stretches
+            before = sizes
         return "stays", stretches
 
-    def stretches(self, speed: float, load: float, size: float) -> Iterator[tuple[np.ndarray, bool]]:
+    def stretches(
+        self, speed: float, load: float, disturbance: Mapping[str, Any], most: int = CHUNKS
+    ) -> Iterator[tuple[np.ndarray, bool]]:
         """A motion stretch by stretch: states (k, n), and whether the model holds to the end of it."""
         time, names, start = self.chunk(speed, load), (*self.simulator.names, "unclosed"), None
-        for number in range(CHUNKS):
-            rows = self.simulator.stretch(speed, load, self.disturbance(size), time, start)
+        for number in range(most):
+            interrupts.check()
+            rows = self.simulator.stretch(speed, load, disturbance, time, start)
             shown = np.vstack([rows.T, np.zeros(len(rows))])
             if number == 0:
                 refuse_start(shown[:, :1], names, self.study)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..dynamics import build
 from ..expressions.dae import DAE
-from ..motion.exact import grip_of, one_friction
+from ..motion.grip import grip_of, one_friction
 from ..study.study import Study
 from ..symbols import symbolic
 from .elements import Events

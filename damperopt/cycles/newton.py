@@ -8,9 +8,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from .collocation import Linearised, Path, linearised
+from .collocation import Leg, Linearised, Path, linearised
 
-__all__ = ["Condition", "Corrected", "Metric", "NoOrbit", "Tangent", "corrected", "phase", "tangent"]
+__all__ = ["Corrected", "Metric", "NoOrbit", "Phase", "Tangent", "corrected", "phase", "tangent"]
 
 ITERATIONS = 10
 
@@ -62,24 +62,45 @@ class Tangent:
 
 @dataclass(frozen=True)
 class Corrected:
-    """An orbit, its linearised legs and conditions, and how many iterations it took."""
+    """An orbit, its linearised legs, equations and gradients of conditions, and how many iterations it took."""
 
     path: Path
     legs: tuple[Linearised, ...]
+    system: np.ndarray
     gradients: np.ndarray
     iterations: int
 
 
-def phase(path: Path, metric: Metric) -> Condition:
-    """The start stays, of all shifts in time, next to where it is."""
-    leg = path.legs[0]
-    rate = (leg.x[0, 0] - leg.start) / metric.states**2
-    rate, start = rate / np.linalg.norm(rate * metric.states), leg.start
-    return lambda x, parameters, direction: (float(rate @ (x - start)), rate, 0.0)
+@dataclass(frozen=True)
+class Phase:
+    """That of all shifts in time an orbit of one leg is the one nearest to a reference: the integral of x x_ref' vanishes.
+
+    Attributes
+    ----------
+    reference, weights : ndarray
+        (N, m, n) states at the stages, and their rates over the squares of the scales.
+    """
+
+    reference: np.ndarray
+    weights: np.ndarray
+
+    def row(self, leg: Leg, states: np.ndarray) -> tuple[float, np.ndarray]:
+        """Value, and slopes by the columns of a linearised leg (N, m, n, n + 3)."""
+        value = float(np.sum(self.weights * (leg.x - self.reference)))
+        return value, np.einsum("rin,rinj->j", self.weights, states)
+
+
+def phase(path: Path, metric: Metric) -> Phase:
+    """The phase of a path is kept."""
+    (leg,) = path.legs
+    N, m, n = leg.x.shape
+    rates = leg.flow.slopes(leg.x.reshape(-1, n), leg.z.reshape(N * m, -1), path.parameters, 0 * path.parameters).rates
+    weights = rates.reshape(N, m, n) / metric.states**2
+    return Phase(leg.x, weights / np.sqrt(np.sum((weights * metric.states) ** 2)))
 
 
 def corrected(
-    path: Path, conditions: Sequence[Condition], direction: np.ndarray, metric: Metric, along: Tangent | None
+    path: Path, conditions: Sequence[Condition | Phase], direction: np.ndarray, metric: Metric, along: Tangent | None
 ) -> Corrected:
     """The orbit near a path; `NoOrbit` if there is none.
 
@@ -88,7 +109,7 @@ def corrected(
     path : Path
         K legs.
     conditions : sequence of Condition
-        (K,) at the ends of the legs but the last, and at the start of the orbit.
+        (K,) at the ends of the legs but the last, and at the start of the orbit; or the phase of an orbit of one leg.
     direction : ndarray
         Of the parameter.
     metric : Metric
@@ -111,22 +132,20 @@ def corrected(
         if not size < 1e3 or min(leg.duration for leg in path.legs) <= 0:
             raise NoOrbit
         if size < CONVERGED:
-            return Corrected(path, tuple(legs), gradients, iteration + 1)
+            return Corrected(path, tuple(legs), system, gradients, iteration + 1)
     raise NoOrbit
 
 
-def tangent(
-    found: Corrected, conditions: Sequence[Condition], direction: np.ndarray, metric: Metric, along: Tangent | None
-) -> Tangent:
-    """Direction of the branch at an orbit, of length 1, on the side of `along`; None: to larger parameters."""
-    _, system, right, _ = _system(found.path, conditions, direction, metric, along)
-    right = np.zeros_like(right)
-    right[-1] = 1.0
+def tangent(found: Corrected, metric: Metric, ahead: Tangent | None) -> Tangent:
+    """Direction of the branch at an orbit, of length 1, on the side of `ahead`; None: to larger parameters."""
+    right = np.zeros(len(found.system))
+    right[-1] = 1.0  # along what the orbit was sought orthogonal to, or the parameter
     try:
-        step = _unfolded(found.legs, np.linalg.solve(system, right), constant=0.0)
+        step = _unfolded(found.legs, np.linalg.solve(found.system, right), constant=0.0)
     except np.linalg.LinAlgError:
         raise NoOrbit from None
-    return step.times(1 / np.sqrt(step.along(step, metric)))
+    side = step.parameter if ahead is None else step.along(ahead, metric)
+    return step.times(np.copysign(1 / np.sqrt(step.along(step, metric)), side))
 
 
 def _unfolded(legs: Sequence[Linearised], d: np.ndarray, constant: float = 1.0) -> Tangent:
@@ -142,7 +161,7 @@ def _unfolded(legs: Sequence[Linearised], d: np.ndarray, constant: float = 1.0) 
 
 
 def _system(
-    path: Path, conditions: Sequence[Condition], direction: np.ndarray, metric: Metric, along: Tangent | None
+    path: Path, conditions: Sequence[Condition | Phase], direction: np.ndarray, metric: Metric, along: Tangent | None
 ) -> tuple[list[Linearised], np.ndarray, np.ndarray, np.ndarray]:
     """Legs to first order, and the equations for d start, d durations, d parameter."""
     n, K = path.legs[0].flow.n, len(path.legs)
@@ -162,7 +181,9 @@ def _system(
         if along is not None:
             arc += np.einsum("rin,rinj->j", along.stages[k] / metric.states**2, legs[-1].states) / count @ chain
         if k < K - 1:
-            value, gradients[k], slope = conditions[k](leg.end, path.parameters, direction)
+            condition = conditions[k]
+            assert not isinstance(condition, Phase)  # that is for orbits of one leg
+            value, gradients[k], slope = condition(leg.end, path.parameters, direction)
             system[n + k] = gradients[k] @ before[:, :-1]
             system[n + k, -1] += slope
             right[n + k] = -value - gradients[k] @ before[:, -1]
@@ -170,8 +191,13 @@ def _system(
     system[:n] = path.closing[:, None] * before[:, :-1]
     system[:n, :n] -= np.eye(n)
     right[:n] = start - path.closing * (path.legs[-1].end + before[:, -1])
-    value, gradients[-1], slope = conditions[-1](start, path.parameters, direction)
-    system[n + K - 1, :n], system[n + K - 1, -1], right[n + K - 1] = gradients[-1], slope, -value
+    last = conditions[-1]
+    if isinstance(last, Phase):
+        value, columns = last.row(path.legs[0], legs[0].states)
+        system[n + K - 1], right[n + K - 1] = columns[:-1], -value - columns[-1]
+    else:
+        value, gradients[-1], slope = last(start, path.parameters, direction)
+        system[n + K - 1, :n], system[n + K - 1, -1], right[n + K - 1] = gradients[-1], slope, -value
     if along is None:
         system[-1, -1] = 1.0
     else:

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
+    "cycle_map": "cycles",
     "cycles": "cycles",
     "decay": "motion",
     "mass_by_part": "design",
@@ -22,6 +23,7 @@ _HOME = {
     "roll": "motion",
     "trajectory": "motion",
     "tyre_over_load": "tyre",
+    "tyre_over_path": "tyre",
     "tyre_over_slip": "tyre",
 }
 """Module of each public function; that of a chart is `chart.chart`, that of a linkage `linkage.linkage`."""

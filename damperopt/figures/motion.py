@@ -119,7 +119,7 @@ def roll(record: Trajectory, found: Roll, frozen: Frozen, after: str = "") -> An
         figure.align_ylabels(axes)
         shaded = "shaded: unstable" + (f" (lightly: margin below {found.margin:g} 1/s)" if found.margin else "")
         words = f"stopped: {plain(record.message)}" if record.message else plain(record.along)
-        lines = [words, *([plain(after)] if after else []), f"{shaded}, with time held"]
+        lines = [words, *map(plain, after.split(" and ")), f"{shaded}, with time held"]
         figure.suptitle("\n".join(lines), fontsize=10)
         return figure
 

@@ -1,14 +1,18 @@
 """UTAS' layout: a bending arm and the damper side by side, from the upper hinge line to the apex.
 
-Both hang on the hinge line, a beam of the arm's section that the strut clamps at y = 0. Arm shear V and damper force S bend its
-halves by M_+(t) = V l_arm + q t and M_-(t) = q t at the distance t from their ends, q = S L/l_arm: across the plane of arm and
-damper nothing but they acts on the apex, so that the arm pushes as the damper pulls. The strain energy,
+Both hang on the hinge line, a beam of the arm's section that is held where it leaves the strut, at the distance a from its
+ends (a = b where the strut has no width). Arm shear V and damper force S bend its halves by M_+(t) = V l_arm + q t and
+M_-(t) = q t at the distance t from their ends, q = S L/l_arm: across the plane of arm and damper nothing but they acts on the
+apex, so that the arm pushes as the damper pulls. The strain energy,
 
-    2 E I U = V^2 l^2 (l/3 + b) + V q l b^2 + 2/3 q^2 b^3,    l = l_arm,
+    2 E I U = V^2 l^2 (l/3 + a) + V q l a^2 + 2/3 q^2 a^3,    l = l_arm,
 
-gives with S = 0 the deflection of the arm's tip, 1 + 3 b/l times that of a clamped arm, and the retreat of its root,
-3 b^2/(2 l (l + 3 b)) of that, which takes stroke from the damper; and at its least over V (the apex held) the stiffness along
-the damper, 1/k = (L/l)^2 b^3/(E I) (2/3 - 3 b/(4 (l + 3 b))).
+gives with S = 0 the deflection of the arm's tip, 1 + 3 a/l times that of a clamped arm, and the retreat of its root,
+3 a^2/(2 l (l + 3 a)) of that, which takes stroke from the damper; and at its least over V (the apex held) the stiffness along
+the damper, 1/k = (L/l)^2 a^3/(E I) (2/3 - 3 a/(4 (l + 3 a))).
+
+V also pushes the arm with V b/L and the half beside it with V l/L. The arm is shorter by 3 I b/(l^2 L A (1 + 3 a/l)) of its
+deflection, which takes stroke from the damper as a retreat of its root by (L^2 - b^2)/(L l) of that would.
 """
 
 from __future__ import annotations
@@ -53,11 +57,22 @@ class Utas(TorqueLinks):
         printed = 2 * E * I_arm * ell * sin_alpha / R**2, c_lambda * ell**2 * b / (10 * R)
         return from_lengths(3 * E * I_arm / R**3 / self._softer(b, R), arm_tip, damper, ell, R, R), printed
 
-    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:
-        """Arm from (0, b, h), damper from (0, -b, h), both to the apex."""
+    def linkage_of(self, study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+        """With the arm as short as its shear pushes it, V b/L over E A/l."""
+        E = study.material.youngs_modulus
+        if self.geometry != "spatial" or not self.is_sized("arm"):
+            return self.linkage(design, E, stroke)
+        return self.spatial(design, E, stroke, area(study.mass.arm_section, design["I_arm"]))
+
+    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, section: Expr = None) -> Linkage:
+        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without a section [m^2] keeps its length."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         l_arm = sqrt(L**2 + b**2)
-        retreat = 3 * b**2 / (2 * l_arm * (l_arm + 3 * b)) if self.is_sized("arm") else 0
+        a = self.links.overhang(b)
+        retreat = 3 * a**2 / (2 * l_arm * (l_arm + 3 * a)) if self.is_sized("arm") else 0
+        if section is not None:
+            shorter = 3 * design["I_arm"] * b / (l_arm**2 * L * section * self._softer(b, l_arm))
+            retreat = retreat + shorter * (L**2 - b**2) / (L * l_arm)
         return closed_loop(
             design,
             3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm),
@@ -73,7 +88,7 @@ class Utas(TorqueLinks):
 
     def _softer(self, b: Expr, l_arm: Expr) -> Expr:
         """Deflection of the tip over that of an arm clamped at its root."""
-        return 1 + 3 * b / l_arm if self.is_sized("arm") else 1
+        return 1 + 3 * self.links.overhang(b) / l_arm if self.is_sized("arm") else 1
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
         """Along the damper: the arm in compression, and both halves of the hinge line."""
@@ -81,9 +96,9 @@ class Utas(TorqueLinks):
         if not self.is_sized("arm"):
             return links
         E, I_arm, L, b = study.material.youngs_modulus, design["I_arm"], design["L"], design["b"]
-        l_arm = sqrt(L**2 + b**2)
+        l_arm, a = sqrt(L**2 + b**2), self.links.overhang(b)
         arm = Compliant("arm", E * area(study.mass.arm_section, I_arm) / l_arm)
-        halves = E * I_arm / b**3 * (l_arm / L) ** 2 / (2 / 3 - 3 * b / (4 * (l_arm + 3 * b)))
+        halves = E * I_arm / a**3 * (l_arm / L) ** 2 / (2 / 3 - 3 * a / (4 * (l_arm + 3 * a)))
         return (*links, arm, Compliant("arm", halves))
 
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
@@ -102,12 +117,12 @@ class Utas(TorqueLinks):
             load="spring_force",
             length=true_length,
             bending_length=bends_over,
+            thrust=b / L if self.is_sized("arm") else 0,
         )
         damper = Member("damper", "", "damper", (0.0, -b, h), apex, load="damper_force")
         links = self.link_members("lower torque link", design, -h, apex)
         if not self.is_sized("arm"):
             return (*links, arm, damper)
-        beam = replace(
-            arm, name="hinge line", part="hinge line", kind="hinge", start=(0.0, -b, h), end=(0.0, b, h), length=2 * b
-        )
+        ends: dict[str, Any] = {"start": (0.0, -b, h), "end": (0.0, b, h), "length": 2 * self.links.overhang(b)}
+        beam = replace(arm, name="hinge line", part="hinge line", kind="beam", thrust=true_length / L, **ends)
         return (*links, arm, beam, damper)

@@ -65,10 +65,6 @@ class Course:
         columns = [history.column(name) for name in QUANTITIES]
         time = np.array(history.column("time"))
         values = np.array([np.zeros(time.size) if column is None else column for column in columns])
-        for load, t in zip(values[1].tolist(), time.tolist(), strict=True):
-            if words := study.beyond_data(load):
-                allowed = "loads that tyre and strut have data for"
-                raise ConfigError(f"history: load at {t:g} s: {load / 1e3:.6g} kN {words}; allowed: {allowed}")
         if columns[2] is not None:
             strut = study.gear.strut
             if strut is None:
@@ -77,6 +73,11 @@ class Course:
                 raise ConfigError(
                     f"history: stroke: {most:g} m; allowed: at most {strut.longest:g} m, the travel of gear.strut"
                 )
+        strokes = [None] * time.size if columns[2] is None else values[2].tolist()
+        for load, stroke, t in zip(values[1].tolist(), strokes, time.tolist(), strict=True):
+            if words := study.beyond_data(load, stroke):
+                allowed = "loads that tyre and strut have data for"
+                raise ConfigError(f"history: load at {t:g} s: {load / 1e3:.6g} kN {words}; allowed: {allowed}")
         given = None
         if disturbance is not None:
             given = posed(study, names, values[0].max(), values[1, 0], disturbance, float(np.ptp(time)))

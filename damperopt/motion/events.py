@@ -28,8 +28,11 @@ STILL = 1e-13
 """Rate [rad/s] below which nothing rubs: what rounding leaves where the motion has stopped."""
 
 NOISE = 1e-11
-"""Relative to the sizes that its argument has had: how far a corner must be passed. A motion that creeps into a corner would
-meet it again and again by rounding."""
+"""Relative to the sizes that its argument has had: how far a corner must be passed, beside what the integrator does not
+resolve. A motion that creeps into a corner, or stays on it as the force of a damper in a gap, would meet it again and again."""
+
+ABSOLUTE = 1e-3
+"""Absolute over relative tolerance."""
 
 STEPS_PER_CYCLE = 40
 """Least steps in a cycle of the fastest mode: a corner that is passed and passed back within one would be missed."""
@@ -112,7 +115,7 @@ class Run:
         # modes of the corners, and the direction of dry friction: +-1 sliding, 0 sticking
         self._modes = np.ones(model.corners + 1)
         self._modes[-1] = 0.0
-        self._sticks, self._sizes = False, np.zeros(model.corners)
+        self._sticks, self._sizes, self._unresolved = False, np.zeros(model.corners), np.zeros(model.corners)
         self._z = np.zeros(model.unknowns)
         start = [0.0] * len(model.state_names) if disturbance is None else disturbance.start(model.state_names)
         self._x0 = self._relaxed(np.array(start))
@@ -183,7 +186,7 @@ class Run:
                     x,
                     method="DOP853",
                     rtol=self._tolerance,
-                    atol=self._tolerance / 1000,
+                    atol=ABSOLUTE * self._tolerance,
                     max_step=self._max_step,
                     first_step=min(1e-3 * self._max_step, (end - t) / 2),
                     events=self._events(),
@@ -197,6 +200,7 @@ class Run:
                 if leg.status == -1 or (leg.status == 0 and end == time[-1]):
                     return rows, "" if leg.status == 0 else f"the integrator cannot go on: {leg.message}"
                 t, x = last, leg.y[:, -1].copy()
+                self._grow(leg.t, leg.y)
                 if leg.status == 1:
                     self._cross(t, x, [i for i, times in enumerate(leg.t_events) if times.size])
         except CannotClose:
@@ -211,7 +215,8 @@ class Run:
         """Functions that fall through zero when a corner is passed, friction last."""
 
         def corner(i: int) -> Callable[[float, np.ndarray], float]:
-            return lambda t, x: float(self._held(t, x)[2][i] * self._modes[i] + NOISE * self._sizes[i])
+            play = NOISE * self._sizes[i] + self._unresolved[i]
+            return lambda t, x: float(self._held(t, x)[2][i] * self._modes[i] + play)
 
         def grip(t: float, x: np.ndarray) -> float:
             rate, drive, most = self._evaluated(t, x)[3][:3]
@@ -224,6 +229,10 @@ class Run:
         for function in functions:
             function.terminal, function.direction = True, -1  # type: ignore[attr-defined]  # how SciPy is told
         return functions
+
+    def _grow(self, times: np.ndarray, states: np.ndarray) -> None:
+        for t, x in zip(times, states.T, strict=True):
+            self._sizes = np.maximum(self._sizes, np.abs(self._held(t, x)[2]))
 
     def _cross(self, t: float, x: np.ndarray, passed: list[int]) -> None:
         """Change the modes of the corners that were passed, and of those that this moves."""
@@ -260,6 +269,7 @@ class Run:
         for _ in range(2):  # a corner's argument may hang on the mode of another
             arguments = self._held(t, x)[2].copy()
             self._sizes = np.maximum(self._sizes, np.abs(arguments))
+            self._unresolved = ABSOLUTE * self._tolerance * self._model.slopes(x, self._z, self._modes, self._point)[0]
             ahead = self._evaluated(t, x + 1e-9 * self._rate(t, x))[2] - arguments
             for i in which:
                 if i < self._model.corners:

@@ -17,9 +17,7 @@ import casadi as ca
 import numpy as np
 
 from ..dynamics import build
-from ..errors import ConfigError
-from ..expressions.corners import Switch, Switched
-from ..expressions.dae import DAE
+from ..expressions.corners import Switched
 from ..stability.linear import LinearGear, LinearModel
 from ..study.disturbances import Disturbance
 from ..study.history import History
@@ -27,11 +25,12 @@ from ..study.study import Study
 from ..symbols import data_values, symbolic
 from .course import Along, Course, dae_along
 from .events import Drive, Fast, Run, Steady
+from .grip import grip_of, one_friction, slopes_of
 from .measure import fastest_rate
 from .question import output_points, posed, refuse_start, valid_part
 from .trajectory import Trajectory
 
-__all__ = ["ExactSimulator", "grip_of", "one_friction", "simulate_exactly"]
+__all__ = ["ExactSimulator", "simulate_exactly"]
 
 FEWEST_POINTS = 2000
 
@@ -123,7 +122,13 @@ class ExactSimulator:
         motion = [dae.ode, step, arguments, grip_of(dae, friction)]
         rows = ca.vertcat(dae.x, *(ca.SX(value) for value in outputs.values()))
         self._inputs, self._known = inputs, ca.vertcat(dae.design, data)
-        self._expressions = motion, [rows], [ca.SX(dae.first_guess())], [dae.relaxed]
+        self._expressions = (
+            motion,
+            [rows],
+            [ca.SX(dae.first_guess())],
+            [dae.relaxed],
+            [ca.sum2(ca.fabs(slopes_of(dae, arguments)))],
+        )
         self._take(study.start if design is None else design, complete=design is not None)
 
     def _take(self, design: Mapping[str, float], complete: bool = True) -> None:
@@ -133,7 +138,7 @@ class ExactSimulator:
             return  # calls will give one
         self.model.at(design)
         values = ca.DM([*(design[name] for name in self.model.design_names), *data_values(self.study)])
-        self.motion, self.rows, self.first_guess, self.relaxed = (
+        self.motion, self.rows, self.first_guess, self.relaxed, self.slopes = (
             Fast(self._inputs, [ca.substitute(e, self._known, values) for e in expressions])
             for expressions in self._expressions
         )
@@ -244,32 +249,3 @@ class ExactSimulator:
         if start is not None:
             run.begin_at(start)
         return np.array(run.rows_at(time)[0])
-
-
-FRICTIONS = ("friction", "damper friction")
-"""Corners at which the motion sticks: of the strut, and of a damper."""
-
-
-def one_friction(dae: DAE, corners: Switched) -> tuple[DAE, Switch | None]:
-    """The friction of a model, taken out of its other corners; one mode for all that rubs at the same rate."""
-    found = [corners.switches.pop(name) for name in FRICTIONS if name in corners.switches]
-    found = [switch for switch in found if ca.depends_on(ca.vertcat(dae.ode, dae.alg), switch.mode)]
-    if len(found) == 2:
-        if not ca.is_equal(ca.SX(found[0].argument), ca.SX(found[1].argument), 10):
-            raise ConfigError("friction of strut and damper at two places cannot be simulated exactly; allowed: one of the two")
-        ode, alg = (ca.substitute(rows, found[1].mode, found[0].mode) for rows in (dae.ode, dae.alg))
-        outputs = {name: ca.substitute(ca.SX(value), found[1].mode, found[0].mode) for name, value in dae.outputs.items()}
-        dae = replace(dae, ode=ode, alg=alg, outputs=outputs)
-    return dae, found[0] if found else None
-
-
-def grip_of(dae: DAE, friction: Switch | None) -> Any:
-    """Rate at which the friction rubs; its derivative without friction; what full friction takes off that; d rate/dx."""
-    if friction is None:
-        return ca.SX.zeros(3 + dae.x.numel())
-    rate = ca.SX(friction.argument)
-    slope = ca.jacobian(rate, dae.x)
-    if dae.z.numel():
-        slope -= ca.jacobian(rate, dae.z) @ ca.inv_minor(ca.jacobian(dae.alg, dae.z)) @ ca.jacobian(dae.alg, dae.x)
-    change = slope @ dae.ode
-    return ca.vertcat(rate, ca.substitute(change, friction.mode, 0), -ca.jacobian(change, friction.mode), slope.T)

@@ -78,7 +78,8 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout, softness
     list of Constraint
     """
     required = study.requirements
-    blocks = [c for m in study.damper.members(design) if m.kind == "arm" for c in _arm(study, m, sized.event)]
+    bending = [member for member in study.damper.members(design) if member.kind in ("arm", "beam")]
+    blocks = [c for member in bending for c in _arm(study, member, sized.event)]
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
@@ -171,7 +172,11 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     stop = study.damper.stop
     if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
         longer = ("damper.end_stop.stroke",)
-        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", longer, ratio=True))
+        blocks.append(
+            Constraint(
+                "end_stop", stop.stroke, sized.event.stroke, True, "rad" if study.damper.ROTARY else "m", longer, ratio=True
+            )
+        )
     most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
     if study.damper.has_sized_parts() and most is not None:
         width = study.damper.links.width(design["L"])

@@ -24,7 +24,7 @@ from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
 from ..tyres.curves import TyreCurves
-from .tables import write_chart, write_chart_json, write_modes, write_tyre
+from .tables import write_chart, write_chart_json, write_modes, write_response, write_tyre
 
 __all__ = [
     "Answer",
@@ -367,7 +367,11 @@ def write_tyre_files(place: Path, record: TyreCurves) -> None:
         return drawn
 
     write_tyre(place, record)
-    _save({"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}, place)
+    figures = {"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}
+    if record.response is not None:
+        write_response(place / "tyre-response.csv", record.response)
+        figures["response"] = drawing("tyre_over_path")
+    _save(figures, place)
 
 
 def _drawing(figure: DesignFigure, answer: Answer) -> Callable[[], Any]:

@@ -18,6 +18,7 @@ from ..stability.modes import ModeTable
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..tyres.curves import TyreCurves
+from ..tyres.path_response import RESPONSES, PathResponse
 
 if TYPE_CHECKING:
     from ..motion.roll import Roll
@@ -28,6 +29,7 @@ __all__ = [
     "write_modes",
     "write_motion",
     "write_ranking",
+    "write_response",
     "write_roll",
     "write_trajectory",
     "write_tyre",
@@ -151,6 +153,18 @@ def write_tyre(folder: Path, record: TyreCurves) -> None:
         for load, force, moment in zip(record.drawn, record.force, record.moment, strict=True):
             for alpha, F_y, M_z in zip(record.slips, force, moment, strict=True):
                 writer.writerow([f"{load:.9g}", f"{alpha:.9g}", _or_empty(F_y), _or_empty(M_z)])
+
+
+def write_response(path: Path, record: PathResponse) -> None:
+    """Force and moment over path frequency as CSV: a row for each contact line and frequency, real and imaginary parts [SI]."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        parts = [f"{name} {part} [{unit}]" for name, unit in RESPONSES.items() for part in ("real", "imaginary")]
+        writer.writerow(["contact line", "load [N]", "path frequency [rad/m]", "contact lengths per wave", *parts])
+        for line, values in record.lines.items():
+            for k, length, response in zip(record.frequencies, record.contact_lengths, values.T, strict=True):
+                numbers = [part for value in response for part in (value.real, value.imag)]
+                writer.writerow([line, *(f"{number:.9g}" for number in (record.load, k, length, *numbers))])
 
 
 def _or_empty(value: float) -> str:

@@ -111,8 +111,19 @@ def assumptions(study: Study, result: DesignResult) -> list[str]:
             f"Bulk modulus of the oil {bulk}, {model.damper_fixed_mass:g} kg of the damper that no size changes, and the "
             "proportions of eyes and pins (mass.lug) are typical where the study does not give them."
         )
+        found += _held(study)
     found += [f"{words[:1].upper()}{words[1:]}." for words in result.rests_on]
     return [*found, "Mass and strength follow the sizing rules of the study page: estimates for comparison, no stress report."]
+
+
+def _held(study: Study) -> list[str]:
+    """Where the strut holds the beams of hinges."""
+    links = getattr(study.damper, "links", None)
+    if links is None or not any(member.is_beam for member in study.damper.members(study.start)):
+        return []
+    if links.strut_width is None:
+        return ["Beams of hinges are held on the axis of the strut, on the safe side (damper.links.strut_width)."]
+    return [f"Beams of hinges are held at the sides of a strut {number(links.strut_width, 'm')} wide, which does not give way."]
 
 
 def _range(values: Sequence[float], unit: str, ends: bool) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Annotated, Any, Self
@@ -11,14 +12,14 @@ from pydantic import Discriminator, Tag, model_validator
 from ..expressions.calculus import Expr, piecewise
 from ..quantities.record import Force, Record, refuse
 
-__all__ = ["OverLoad", "over_load"]
+__all__ = ["OverLoad", "over_load", "straight"]
 
 
 class OverLoad(Record):
-    """A number at some loads of the wheel, ``{load: [50 kN, 100 kN], value: [0.12 m, 0.17 m]}``."""
+    """A number at some loads, ``{load: [50 kN, 100 kN], value: [0.12 m, 0.17 m]}``."""
 
     load: tuple[Force, ...]
-    """Ascending [N]; of one wheel in a tyre's table, of the whole gear in a gear's."""
+    """Ascending [N]; of one wheel in a tyre's table, of the whole gear in that of a strut."""
     value: tuple[float, ...]
     """The number at each of them, in the unit of its key."""
 
@@ -33,8 +34,13 @@ class OverLoad(Record):
 
     def at(self, load: Expr) -> Expr:
         """The number at a load [N]; beyond the table its last line goes on, and `beyond` says so."""
-        points = list(zip(self.load, self.value, strict=True))
-        return piecewise(load, self.load[1:-1], [partial(_line, *ends) for ends in pairwise(points)])
+        return straight(load, self.load, self.value)
+
+
+def straight(x: Expr, places: Sequence[float], values: Sequence[float]) -> Expr:
+    """Straight lines through values at ascending places; beyond them the last line goes on."""
+    points = list(zip(places, values, strict=True))
+    return piecewise(x, places[1:-1], [partial(_line, *ends) for ends in pairwise(points)])
 
 
 def _line(start: tuple[float, float], end: tuple[float, float], load: Expr) -> Expr:

@@ -251,3 +251,14 @@ def test_vanishing_contact_length_is_the_leading_point():
         assert certify(of, {}, 0.0).proved == tangent.proved
         limit = [linear_gear(of.replace(tyre__contact=c)).abscissa(20.0, F_Z)[0] for c in ("memory", "leading_point")]
         assert limit[0] == pytest.approx(limit[1], abs=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("V", "of"), [(0.2, O), (0.5, T | {"k_delta": 6e9}), (8.0, T | {"k_psi": 4e9, "c_psi": 3e4}), (6.0, T)]
+)
+def test_motions_too_fast_for_a_field_are_found(V, of):
+    """Up to 120 rad of a motion lie within the contact line; the twin has them all on its collocated line."""
+    p = gear(of)
+    expected = rightmost(V, F_Z, p, nodes=260, count=4)
+    found = linear_gear(study(of, 0.1, 100.0)).roots(V, F_Z)[0]
+    assert (np.abs(expected[:, None] - found).min(axis=1) < 1e-8 * (1 + np.abs(expected))).all()

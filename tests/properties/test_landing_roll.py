@@ -19,6 +19,7 @@ from damperopt.study.history import History
 GEAR = {"I_z": 100.0, "e": 0.12, "k_psi": 4e5, "c_psi": 900.0, "I_x": 600.0, "k": 6.1e6, "c": 2000.0, "l": 2.5, "kappa": 200.0}
 GAS = {"pressure": 1.2e6, "area": 0.03, "volume": 0.015, "exponent": 1.15}
 MASS, SLOPE, TRAIL, SIGMA = 60.0, 12.0, 0.4, 0.3
+STIFFNESS = [5.5e6, 6.8e6]
 LOADS, LENGTHS = [20e3, 160e3], [0.05, 0.15]
 ROWS = (
     (0.0, 60.0, 50e3, 0.0),
@@ -41,6 +42,7 @@ def study_of(contact):
     G = GEAR
     lateral = {"inertia": G["I_x"], "stiffness": G["k"], "damping": G["c"], "height": G["l"]}
     strut = {"gas": GAS, "travel": 0.42, "moving_mass": MASS}
+    strut["bending_stiffness"] = {"stroke": [0, 0.42], "value": STIFFNESS}
     data = {
         "name": "roll",
         "gear": {"kind": "yaw_bending", "yaw_inertia": G["I_z"], "caster_length": G["e"], "wheel_radius": 0.36},
@@ -88,12 +90,13 @@ class Ground:
         """Of psi, psi', delta, H = I_x delta'; `force` gives F_y, M_z, and the rate of q at the front."""
         psi, psi_t, delta, H = state[:4]
         G, (V, F, a, a_t, s, T) = GEAR, self.at(t, k)
-        l = G["l"] - self.stroke(t, F)
+        x_s = self.stroke(t, F)
+        l, k_delta = G["l"] - x_s, STIFFNESS[0] + (STIFFNESS[1] - STIFFNESS[0]) * x_s / 0.42
         I_x = G["I_x"] - MASS * (G["l"] ** 2 - l**2)
         eta = -(G["e"] * psi + l * delta)
         F_y, M_z, q_t = force(V, F, a, a_t, s, eta, psi)
         yaw = T - G["k_psi"] * psi - G["c_psi"] * psi_t - G["kappa"] * psi_t / V - G["e"] * F_y - M_z
-        bending = -G["k"] * delta - G["c"] * H / I_x - l * F_y + F * G["e"] * psi
+        bending = -k_delta * delta - G["c"] * H / I_x - l * F_y + F * G["e"] * psi
         return np.array([psi_t, yaw / G["I_z"], H / I_x, bending, q_t])
 
     def start(self):

@@ -15,7 +15,8 @@ GEAR = """
 name: gear with an actuator
 gear: {kind: yaw_bending, yaw_inertia: 100 kg m^2, caster_length: 0.12 m, wheel_radius: 0.362 m,
        lateral: {inertia: 600 kg m^2, stiffness: 6.1 MN m/rad, damping: 300 N m s/rad, height: 2.5 m}}
-tyre: {law: stiffness, contact: leading_point, carcass_stiffness: 1.4e6 N/m^2, half_contact_length: 0.1 m, relaxation_length: 0.3 m}
+tyre: {law: stiffness, contact: leading_point, carcass_stiffness: 1.4e6 N/m^2, half_contact_length: 0.1 m,
+       relaxation_length: 0.3 m}
 damper: {topology: boeing, geometry: planar, compliance: rigid, charge_pressure: 1 MPa}
 envelope: {speed: {min: 10 m/s, max: 60 m/s}, vertical_load: 150 kN}
 requirements: {stability_margin: 2 1/s, limit_torque: 30 kN m,

@@ -21,7 +21,7 @@ LONGEST, SHORTEST, POINTS = 100.0, 1.25, 240
 """Contact lengths per wave."""
 
 SPEED = 40.0
-"""At which a line with a clock of its own is shown [m/s]."""
+"""At which a line is shown that has a time of its own, such as that of its damping [m/s]."""
 
 
 @dataclass(frozen=True)

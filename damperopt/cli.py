@@ -14,6 +14,7 @@ with interrupts.at_once():
 
     from .commands import (
         analyse,
+        breakout,
         chart,
         components,
         cycles,
@@ -51,6 +52,7 @@ IN_ORDER = (
     sweep,
     tyre,
     gains,
+    breakout,
     thesis,
     components,
     validate,

@@ -1,6 +1,7 @@
 """Commands of the command line, a file each."""
 
 from .analyse import analyse
+from .breakout import breakout
 from .chart import chart
 from .components import components
 from .cycles import cycles
@@ -15,6 +16,7 @@ from .tyre import tyre
 
 __all__ = [
     "analyse",
+    "breakout",
     "chart",
     "components",
     "cycles",

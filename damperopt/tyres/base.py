@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import model_validator
+from pydantic import ConfigDict, model_validator
 
 from ..expressions.calculus import Expr, is_symbol, slope
 from ..expressions.corners import Corners
@@ -140,6 +140,13 @@ class SlipLaw(Record):
         return ""
 
 
+def _by_kind(schema: dict[str, Any]) -> None:
+    """In the schema, ``kind`` in the place of ``contact``, as the reader takes both."""
+    schema["properties"]["kind"] = schema["properties"]["contact"]
+    schema["required"] = [key for key in schema["required"] if key != "contact"]
+    schema["oneOf"] = [{"required": ["contact"]}, {"required": ["kind"]}]
+
+
 class ContactLine(Record):
     """How the string of a tyre meets the ground.
 
@@ -157,6 +164,8 @@ class ContactLine(Record):
     """Whether its transfer functions are rational, so that states stand for all of it."""
     RELAXES: ClassVar[bool] = True
     """Whether it needs `relaxation_length`; a line that has another number for it says no."""
+
+    model_config = ConfigDict(json_schema_extra=_by_kind)
 
     contact: str
 

@@ -34,8 +34,8 @@ SCARCELY = 0.05
 """Part of the plane below which a chart says nothing."""
 
 REMEMBERS = (
-    "With contact memory: without it (planar) it may hold. At 40 m/s a large part of the plane then needs little damping or none, "
-    "and comparisons turn on what is left."
+    "With contact memory: without it (planar) it may hold. At 40 m/s a large part of the plane then needs little damping or "
+    "none, and comparisons turn on what is left."
 )
 """Why a claim differs in the form `memory`, where no other reason is known."""
 

@@ -24,7 +24,7 @@ from typing import Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, sin, sqrt
 from ..ports.linkage import Compliant, Linkage, Member
-from ..strength.sections import area
+from ..strength.sections import area, shape_numbers
 from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
@@ -63,17 +63,18 @@ class Utas(TorqueLinks):
         E = study.material.youngs_modulus
         if self.geometry != "spatial" or not self.is_sized("arm"):
             return self.linkage(design, E, stroke)
-        return self.spatial(design, E, stroke, area(study.mass.arm_section, design["I_arm"]))
+        kappa_area, _ = shape_numbers(study.mass.arm_section)
+        return self.spatial(design, E, stroke, sqrt(design["I_arm"]) / kappa_area)
 
-    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, section: Expr = None) -> Linkage:
-        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without a section [m^2] keeps its length."""
+    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, gyration: Expr = None) -> Linkage:
+        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without its I/A [m^2] keeps its length."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         l_arm = sqrt(L**2 + b**2)
         a = self.links.overhang(b)
         retreat = 3 * a**2 / (2 * l_arm * (l_arm + 3 * a)) if self.is_sized("arm") else 0
         stiffness = 3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm)
-        if section is not None:
-            shorter, aside = (stiffness * l_arm * over / (L * E * section) for over in (b, a))
+        if gyration is not None:
+            shorter, aside = (3 * gyration * over / (L * l_arm**2 * self._softer(b, l_arm)) for over in (b, a))
             retreat = retreat + (shorter * l_arm + aside * b) / L
             stiffness = stiffness / (1 + (shorter * b + aside * l_arm) / L)
         return closed_loop(

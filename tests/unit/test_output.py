@@ -9,9 +9,9 @@ import pytest
 import damperopt
 from damperopt import figures as plots
 from damperopt.optimum.region import feasible_region
-from damperopt.stability.screening import worst_abscissae_of
 from damperopt.output import folder as output
 from damperopt.stability.linear import LinearModel
+from damperopt.stability.screening import worst_abscissae_of
 
 
 @pytest.fixture(scope="module")

@@ -133,3 +133,33 @@ def test_a_landing_roll_passes_through_shimmy(configs, study):
     del data["gear"]["strut"]
     assert worst(study, study.start, 100e3)[0] == pytest.approx(1.66, abs=0.02)
     assert worst(damperopt.Study.model_validate(data), study.start, 100e3)[0] == pytest.approx(8.71, abs=0.02)
+
+
+@pytest.mark.parametrize("study", ["nose_gear_active"], indirect=True)
+def test_what_an_actuator_saves(study):
+    """The masses of the page at 20 degC, and that the damper without its actuator is what decides them."""
+    study = study.replace(solver__starts=1)
+    active, passive = (damperopt.optimise(s) for s in (study, study.without_control()))
+    assert active.certificate.proved
+    assert active.fail_safe.proved
+    assert active.mass.total == pytest.approx(4.728, abs=0.005)
+    assert passive.mass.total == pytest.approx(5.155, abs=0.005)
+    by_name = {c.name: c.active for c in active.constraints}
+    assert by_name["fail_safe_margin"]
+    assert not by_name["stability_margin"]
+
+
+@pytest.mark.parametrize("study", ["nose_gear_mr"], indirect=True)
+def test_what_a_law_makes_of_a_current(study):
+    """The table of the page: the law leaves nothing, the current that always flows is quicker at first and sticks."""
+    design = {"c_lambda": 623.26, "k_lambda": 8.72205e6, "L": 0.335043, "gamma": 0.7285}
+    study = study.replace(damper__compliance="rigid", damper__geometry="planar")
+    law = study.replace(damper__control={"gains": {"yaw_rate": {"constant": 1000.0}}})
+    constant = study.replace(damper__control_current=0.0, damper__idle_current=2.0)
+    found = []
+    for own in (law, constant):
+        motion = damperopt.simulate_exactly(own, design, speed=40.0, disturbance={"kick": {"yaw_rate": 3.0}}, duration=0.3)
+        angle = np.degrees(np.abs(motion["yaw_angle"]))
+        found.append([angle[motion.time > t].max() for t in (0.1, 0.2, 0.27)])
+    assert found[0] == pytest.approx([0.25, 7e-4, 3e-5], rel=0.15)
+    assert found[1] == pytest.approx([0.187, 0.0197, 0.0197], rel=0.02)

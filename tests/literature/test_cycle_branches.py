@@ -16,6 +16,7 @@ import damperopt
 from damperopt.cycles.branches import Question, from_hopf_points
 from damperopt.cycles.criticality import NormalForm
 from damperopt.cycles.edge import Kicker, edge
+from damperopt.cycles.joints import Jointed
 from damperopt.cycles.motions import Seeder
 from damperopt.motion.exact import ExactSimulator
 
@@ -265,3 +266,17 @@ def test_between_them_is_an_unstable_cycle_that_returns(castor):
     turn = lambda x: by_legs(rate, [lambda x: x[1]], x, orbit.period)  # noqa: E731
     assert np.abs((turn(x) - x) / size).max() < 10 * RETURNED
     assert np.abs(orbit.multipliers).max() == pytest.approx(multiplier(turn, x, size), rel=1e-3)
+
+
+def test_friction_that_holds_keeps_the_wheel_still_and_its_reserve_is_what_the_tyre_leaves(castor):
+    """Reserve to both sides: T_c -+ the torque of the tyre, e C_F F_z atan(y/sigma), that drives the wheel."""
+    model = Jointed(castor)
+    flow = model.flow(np.zeros(1), sticks=True)
+    x = np.array([[0.05, 0.0, 0.002]])
+    numbers = flow.values({}, 15.0, 1200.0)
+    rates = flow.slopes(x, flow.unknowns(x, numbers), numbers, 0 * numbers).rates[0]
+    y_t = 15.0 * (np.sin(0.05) - 0.002 / 0.12 * np.cos(0.05))
+    assert rates == pytest.approx([0.0, 0.0, y_t], abs=1e-12)
+    torque = -0.09 * 6.0 * 1200.0 * np.arctan(0.002 / 0.12) / 0.6  # over the inertia: of the rate, as friction holds it
+    reserve = model.signs(flow, x, numbers).reserve[0]
+    assert reserve == pytest.approx([BREAKOUT / 0.6 - torque, BREAKOUT / 0.6 + torque], rel=1e-9)

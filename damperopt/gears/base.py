@@ -140,4 +140,5 @@ class Gear(Record):
         strut = "motion of the shock strut: its stroke is frozen (gear.strut)"
         if self.strut is not None:
             strut = "motion of the shock strut: at each load it stands in balance, at rest (quasi-static)"
-        return (friction, strut)
+        drag = getattr(self, "drag", None)  # of kinds that have it in their equations
+        return (friction, *(() if drag is None else drag.leaves_out()), strut)

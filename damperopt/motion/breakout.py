@@ -1,13 +1,15 @@
-"""The least breakout torque of a friction damper with which a gear comes to rest after a kick, by exact simulation.
+"""How much dry friction brings a wheel to rest: the least breakout of a friction damper after a disturbance, by simulation.
 
-Linear models see no friction, so no proof speaks here: every speed that is looked at is simulated, with friction that sticks.
-At the torque found the gear rests at all of them, and with a little less it does not at the worst.
+A gear that is unstable without friction rests after a small disturbance and shimmies after a large one. More friction moves the
+border, so that a breakout that suffices is met by doubling, and the least one by halving the interval. With what is found the
+wheel rests at every speed that is looked at, and with a little less it does not at one of them; no proof says more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -16,120 +18,137 @@ from ..study.disturbances import Disturbance
 from ..study.study import Study
 from .exact import ExactSimulator
 
-__all__ = ["Breakout", "least_breakout"]
+__all__ = ["Breakout", "comes_to_rest", "least_breakout", "with_breakout"]
 
-SPEEDS = 12
-"""Spaced geometrically over the envelope, unless some are given."""
+CLOSE = 1.03
+"""Ratio of a breakout that suffices to one that does not, at which the search ends."""
 
-TOLERANCE = 0.01
-"""Relative, of the torque."""
+SMALLEST, LEAST, DOUBLINGS = 1 / 64, 0.02, 16
+"""The search begins with this part of the study's breakout, or so many newton or N m, and doubles it at most so often."""
 
-DOUBLINGS = 24
-"""From the torque of the study, before it is said that none is enough."""
-
-LAST = 0.05
-"""Part of the motion at whose end nothing moves."""
+POINTS, AT_THE_END = 400, 40
+"""Of a trajectory; the yaw rate is exactly 0 at the last ones where the wheel has come to rest."""
 
 
 @dataclass(frozen=True)
 class Breakout:
-    """What holds a kick.
+    """The least breakout that suffices at every speed that was looked at.
 
     Attributes
     ----------
-    torque : float
-        Least breakout torque without load, to 1 % [N m].
-    force : float or None
-        The same as a pull at the axle [N]; None: the axle lies on the axis.
-    speed, load : float
-        Where a little less does not hold [m/s], [N].
-    speeds : tuple of float
-        That were looked at [m/s].
-    simulations : int
+    torque : float or None
+        [N m], without what the load adds; None: none was found.
+    speed : float
+        Which asked for it, or at which none was found [m/s].
     """
 
-    torque: float
-    force: float | None
+    torque: float | None
     speed: float
-    load: float
-    speeds: tuple[float, ...]
-    simulations: int
 
 
-def least_breakout(study: Study, kick: Disturbance, *, speeds: Sequence[float] = (), duration: float = 3.0) -> Breakout:
-    """Least breakout torque with which the gear comes to rest within `duration`, at every speed and load that is looked at.
+def with_breakout(study: Study, torque: float) -> Study:
+    """The study with another breakout.
+
+    Parameters
+    ----------
+    study : Study
+    torque : float
+        [N m], without what the load adds.
+    """
+    keys = {"breakout_force": None, "breakout_lever": None, "breakout_torque": torque}
+    return study.replace(**{f"damper__{key}": value for key, value in keys.items()})
+
+
+def comes_to_rest(study: Study, speed: float, load: float, disturbance: Disturbance, duration: float) -> bool:
+    """Whether the piston sticks at the end of an exact simulation.
+
+    Parameters
+    ----------
+    study : Study
+    speed, load : float
+        [m/s], [N]
+    disturbance : Disturbance
+    duration : float
+        [s]
+    """
+    return _rests(ExactSimulator(study, study.start), speed, load, disturbance, duration)
+
+
+def _rests(run: ExactSimulator, speed: float, load: float, disturbance: Disturbance, duration: float) -> bool:
+    with np.errstate(all="ignore"):  # a motion that grows may overflow on its way out of the model's validity
+        motion = run(speed, load, disturbance, duration, points=POINTS)
+    return motion.status == "completed" and not motion["yaw_rate"][-AT_THE_END:].any()
+
+
+def _given(study: Study) -> float:
+    """Breakout torque of a study without what the load adds [N m]."""
+    damper = study.damper
+    if damper.breakout_torque is not None:
+        return float(damper.breakout_torque)
+    lever = abs(study.gear.caster_length) if damper.breakout_lever is None else damper.breakout_lever
+    return float(damper.breakout_force * lever)
+
+
+def least_breakout(
+    study: Study,
+    disturbance: Disturbance,
+    speeds: Sequence[float],
+    load: float,
+    duration: float,
+    at_least: float = 0.0,
+    progress: Callable[[float, float], None] | None = None,
+) -> Breakout:
+    """The least breakout with which the wheel comes to rest at every one of some speeds, to 3 %.
 
     Parameters
     ----------
     study : Study
         With a damper of kind ``friction``.
-    kick : Disturbance
+    disturbance : Disturbance
     speeds : sequence of float
-        [m/s]; none: 12 over the envelope.
+        [m/s]
+    load : float
+        [N]
     duration : float
-        [s]
+        In which it must [s].
+    at_least : float
+        Breakout below which it is known not to [N m].
+    progress : callable or None
+        Is told speed [m/s] and breakout [N m] before each simulation.
 
     Returns
     -------
     Breakout
-
-    Raises
-    ------
-    ConfigError
-        If the damper is of another kind, or no torque, or none at all, is enough.
+        What suffices; the true border lies up to 3 % below.
     """
     if study.damper.kind != "friction":
-        raise ConfigError(f"damper.kind: found '{study.damper.kind}'; allowed: friction, whose exact motion sticks")
-    envelope = study.envelope
-    row = tuple(speeds) or tuple(np.unique(np.geomspace(envelope.speed.min, envelope.speed.max, SPEEDS)).tolist())
-    search = _Search(study, kick, row, duration)
-    low, torque, worst = search.bracket()
-    while torque > (1 + TOLERANCE) * low:
-        middle = (torque * low) ** 0.5
-        if missed := search.missed(middle):
-            low, worst = middle, missed
-        else:
-            torque = middle
-    lever = abs(study.gear.caster_length)
-    return Breakout(torque, torque / lever if lever else None, *worst, row, search.simulations)
+        raise ConfigError(f"damper.kind: found '{study.damper.kind}'; allowed: friction, which lets a wheel stick")
 
+    @cache
+    def simulator(torque: float) -> ExactSimulator:
+        own = with_breakout(study, torque)
+        return ExactSimulator(own, own.start)
 
-class _Search:
-    """Motions of a study with other breakout torques."""
+    def rests(torque: float, speed: float) -> bool:
+        if progress is not None:
+            progress(speed, torque)
+        return _rests(simulator(torque), speed, load, disturbance, duration)
 
-    def __init__(self, study: Study, kick: Disturbance, speeds: Sequence[float], duration: float):
-        self._study, self._kick, self._duration = study, kick, duration
-        self._places = [(V, F) for F in study.envelope.loads for V in speeds]
-        self.simulations = 0
-        damper = study.damper
-        by_force = damper.breakout_force is not None
-        lever = damper.breakout_lever if damper.breakout_lever is not None else abs(study.gear.caster_length)
-        self._given = float(damper.breakout_force * lever if by_force else damper.breakout_torque)
-
-    def bracket(self) -> tuple[float, float, tuple[float, float]]:
-        """A torque that is too small, one twice as large that is enough, and where the first is too small."""
-        torque, missed = self._given, self.missed(self._given)
-        up = missed is not None
-        for _ in range(DOUBLINGS):
-            following = 2 * torque if up else torque / 2
-            found = self.missed(following)
-            if up and found is None and missed is not None:
-                return torque, following, missed
-            if not up and found is not None:
-                return following, torque, found
-            torque, missed = following, found
-        if up:
-            raise ConfigError(f"breakout: none up to {torque:.3g} N m brings the gear to rest after this kick")
-        raise ConfigError("breakout: the gear comes to rest with hardly any friction; allowed: a larger kick")
-
-    def missed(self, torque: float) -> tuple[float, float] | None:
-        """Speed and load at which the gear does not come to rest; None: there is none. What was missed last comes first."""
-        keys = {"breakout_force": None, "breakout_lever": None, "breakout_torque": torque}
-        run = ExactSimulator(self._study.replace(**{f"damper__{key}": value for key, value in keys.items()}))
-        for place in self._places:
-            self.simulations += 1
-            motion = run(*place, self._kick, self._duration, points=400)
-            if motion.status != "completed" or motion["yaw_rate"][-int(LAST * 400) :].any():
-                self._places.sort(key=lambda other, place=place: other != place)  # type: ignore[misc]
-                return place
-        return None
+    torque, decides = max(at_least, _given(study) * SMALLEST), float(speeds[0])
+    ahead = np.asarray(speeds, float).tolist()
+    while ahead:
+        speed = ahead.pop(0)
+        if rests(torque, speed):
+            continue
+        low, high = torque, 2 * torque
+        doubled = 1
+        while not rests(high, speed):
+            low, high, doubled = high, 2 * high, doubled + 1
+            if doubled > DOUBLINGS:
+                return Breakout(None, speed)
+        while high > CLOSE * low:
+            middle = float(np.sqrt(low * high))
+            low, high = (low, middle) if rests(middle, speed) else (middle, high)
+        torque, decides = high, speed
+        ahead = [other for other in np.asarray(speeds, float).tolist() if other != speed]  # all the others anew
+    return Breakout(torque, decides)

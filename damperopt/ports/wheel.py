@@ -33,6 +33,8 @@ class Wheel:
         [rad]
     index : int
         Of this wheel among those of the gear.
+    pressure : Expr or None
+        Of its tyre [Pa]; None: that of the study.
     load_rate : Expr
         Of F_z along a history [N/s].
     """
@@ -47,6 +49,7 @@ class Wheel:
     forward_rate: Expr = 0
     camber: Expr = 0
     index: int = 0
+    pressure: Expr = None
     load_rate: Expr = 0
 
 
@@ -66,6 +69,8 @@ class Contact:
         Backwards [N].
     outputs : mapping of str to Expr
         Other quantities by declared name [SI].
+    deflection : Expr
+        Of the tyre on the ground against its wheel, in the direction of the side force, were it standing [m].
     wheel : Wheel or None
         The wheel that it belongs to: gears read load and speed from it.
     """
@@ -75,4 +80,5 @@ class Contact:
     aligning_moment: Expr
     drag: Expr = 0
     outputs: Mapping[str, Expr] = field(default_factory=dict)
+    deflection: Expr = 0
     wheel: Wheel | None = None

@@ -33,7 +33,7 @@ from ..study.scope import place_words
 from ..study.study import Study
 from .boxes import Box, Strips
 from .damping import Interval
-from .quasi import OverDamping, Quasipolynomial
+from .quasi import OverDamping, Quasipolynomial, UnlikeTyres
 from .rationals import decimal
 from .varying import structure_of
 
@@ -86,6 +86,17 @@ def certify_delay(study: Study, design: Mapping[str, float], margin: float, mode
     -------
     Certificate
     """
+    try:
+        return _certificate(study, design, margin, model)
+    except UnlikeTyres as error:
+        speed, words = (
+            study.envelope.speed,
+            f"not proved: {error}; eigenvalues are exact, and a line without delay can be proved",
+        )
+        return Certificate(False, margin, (speed.min, speed.max), study.envelope.loads, "balls", None, words, 0, "undecided")
+
+
+def _certificate(study: Study, design: Mapping[str, float], margin: float, model: LinearModel) -> Certificate:
     with flint.ctx.workprec(BITS):
         interval = Interval.of(study)
         if interval is None:

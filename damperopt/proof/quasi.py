@@ -26,7 +26,7 @@ from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
 from .varying import Varying
 
-__all__ = ["OverDamping", "Quasipolynomial", "Rows", "Slice", "Tyre"]
+__all__ = ["OverDamping", "Quasipolynomial", "Rows", "Slice", "Tyre", "UnlikeTyres"]
 
 Q: TypeAlias = flint.fmpq
 ONE, UNUSED = Q(1), flint.arb(1)
@@ -107,6 +107,10 @@ class Slice:
         return flint.arb((self.loads[1] - self.loads[0]) / 2)
 
 
+class UnlikeTyres(CertificateError):
+    """The wheels of a gear do not share the numbers of one contact line."""
+
+
 class Quasipolynomial:
     """D of one study and design.
 
@@ -146,7 +150,7 @@ class Quasipolynomial:
         assert structure.footprint is not None
         row = structure.footprint(load, data)
         if structure.wheels > 1 and not ca.is_equal(row, ca.repmat(row[0, :], structure.wheels, 1), 100):
-            raise CertificateError("the wheels of this gear have tyres of their own: no certificate with contact memory")
+            raise UnlikeTyres("the wheels of this gear have unlike tyres, and a proof with contact memory needs them alike")
         self._interval = Interval.of(study)
         self.linear: Linear | None = None
         self._numbers = ca.Function("numbers", [load, data], [ca.densify(row[0, :])])

@@ -72,7 +72,7 @@ def shortest_wavelength(
 
 def contact_length(study: Study, load: float) -> float:
     """2 a at a load of the gear [N]; of several wheels the longest [m]."""
-    data = (tuple(study.tyre.linear(own, study.tyre.pressure)) for own in study.wheel_loads(load))
+    data = (tuple(tyre.linear(own, tyre.pressure)) for own, tyre in study.on_wheels(load))
     return 2 * max(float(a) for *_, a in data)
 
 

@@ -69,6 +69,7 @@ class Study(Record):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
+        self._inflated()
         decay = self.requirements.decay if self.requirements else None
         for i, speed in enumerate(decay.speeds or () if decay else ()):
             low, high = self.envelope.speed.min, self.envelope.speed.max
@@ -85,6 +86,7 @@ class Study(Record):
             if words := self.beyond_data(load):
                 allowed = "loads that tyre and strut have data for"
                 raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
+        self._braked_on_ground()
         self._certain_enough()
         self._controllable()
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
@@ -102,6 +104,33 @@ class Study(Record):
                     f"a torque, or such a load case: this tyre (law '{self.tyre.law}') has no peak moment to derive it from",
                 )
         return self
+
+    def _inflated(self) -> None:
+        """Pressures of single wheels are such as the tyre takes, and it asks for one."""
+        for key in ("left_pressure", "right_pressure"):
+            value = getattr(getattr(self.gear, "axle", None), key, None)
+            if value is None:
+                continue
+            F_z, tyre = max(self.wheel_loads(self.envelope.loads[0])), self.tyre
+            try:
+                type(tyre).model_validate({**tyre.model_dump(exclude_none=True), "pressure": value})
+            except ValidationError as error:
+                raise refuse(f"gear.axle.{key}", error.errors()[0]["msg"].partition(";")[0], "as of tyre.pressure") from None
+            if tuple(tyre.linear(F_z, value)) == tuple(tyre.linear(F_z, 0.9 * value)):
+                allowed = "a tyre that depends on it, by its size or a property file; or left_share alone"
+                raise refuse(f"gear.axle.{key}", f"a pressure, which law '{tyre.law}' has no part for", allowed)
+
+    def _braked_on_ground(self) -> None:
+        """A steady drag beyond what the tyres can hold is none: the wheels slide."""
+        drag, gear = getattr(self.gear, "drag", None), self.gear
+        if drag is None:
+            return
+        for load in self.envelope.samples(LOADS):
+            peaks = [tyre.peaks(own, tyre.pressure) for own, tyre in self.on_wheels(load)]
+            found = drag.braking(gear.wheel_radius) + drag.rolling(load)
+            most = sum(peak.side_force for peak in peaks if peak is not None)
+            if None not in peaks and not found < most:
+                raise refuse("gear.drag", f"{found:g} N at a load of {load:g} N", f"less than {most:g} N, which the tyres hold")
 
     def _certain_enough(self) -> None:
         """What uncertain damping does not go with."""
@@ -135,13 +164,18 @@ class Study(Record):
 
     def wheel_loads(self, load: float) -> tuple[float, ...]:
         """Loads on the wheels [N] at a load on the gear [N]."""
+        return tuple(own for own, _ in self.on_wheels(load))
+
+    def on_wheels(self, load: float) -> tuple[tuple[float, Any], ...]:
+        """Load [N] and tyre of each wheel at a load on the gear [N]."""
         at_rest = {state.name: 0.0 for state in self.gear.states()}
-        return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
+        wheels = self.gear.wheels(at_rest, self.envelope.speed.max, load)
+        return tuple((float(wheel.load), self.tyre.of_wheel(wheel)) for wheel in wheels)
 
     def beyond_data(self, load: float, stroke: float | None = None) -> str:
         """Why tyre or strut has no answer at a load on the gear [N], and a stroke [m] if it is not in balance; else nothing."""
         strut = "" if self.gear.strut is None else self.gear.strut.beyond(load, stroke)
-        return strut or next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
+        return strut or next(filter(None, (tyre.beyond(own, tyre.pressure) for own, tyre in self.on_wheels(load))), "")
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:

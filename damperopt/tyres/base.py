@@ -193,6 +193,10 @@ class ContactLine(Record):
         """The line whose states stand for this one: ``motion``, in transients, or ``search``, in an optimisation."""
         return self
 
+    def side_stiffness(self, linear: Linear) -> Expr:
+        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma)."""
+        return linear.cornering_stiffness / (linear.half_contact_length + linear.relaxation_length)
+
     def least_wave(self) -> float:
         """Contact lengths per wavelength of the motion below which this line is doubtful; 0 of an exact one.
 
@@ -306,6 +310,10 @@ class Tyre(Record):
         """States of one wheel."""
         return self.contact.states()
 
+    def of_wheel(self, wheel: Wheel) -> Self:
+        """The tyre of one wheel, at the pressure that its gear gives it; itself where that gives none."""
+        return self if wheel.pressure is None else self.model_copy(update={"pressure": wheel.pressure})
+
     def on_ground(self, wheel: Wheel, states: Sequence[Expr], corners: Corners) -> Contact:
         """What the ground does to a wheel.
 
@@ -317,14 +325,16 @@ class Tyre(Record):
         corners : Corners
             Version of the nonlinear elements.
         """
-        law: Any = self
-        linear = Linear(*law.linear(wheel.load, self.pressure))
+        law: Any = self.of_wheel(wheel)
+        p = law.pressure
+        linear = Linear(*law.linear(wheel.load, p))
         if is_symbol(wheel.load_rate):
-            longer = slope(lambda load: Linear(*law.linear(load, self.pressure)).half_contact_length, wheel.load)
+            longer = slope(lambda load: Linear(*law.linear(load, p)).half_contact_length, wheel.load)
             linear = replace(linear, half_contact_length_rate=longer * wheel.load_rate)
         rates, alpha_F, alpha_M = self.contact.slips(wheel, linear, states)
-        F_y = law.force(alpha_F, wheel.load, self.pressure)
-        M_z = law.moment(alpha_M, wheel.load, self.pressure, corners)
+        F_y = law.force(alpha_F, wheel.load, p)
+        M_z = law.moment(alpha_M, wheel.load, p, corners)
         M_kappa = self.tread_width_moment * wheel.swivel_rate / wheel.speed
         outputs = {"slip_angle": alpha_F, "side_force": F_y, "aligning_moment": M_z}
-        return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, wheel=wheel)
+        deflection = F_y / self.contact.side_stiffness(linear)
+        return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, deflection=deflection, wheel=wheel)

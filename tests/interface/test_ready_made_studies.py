@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import damperopt
+from damperopt.motion.breakout import comes_to_rest, least_breakout, with_breakout
 from damperopt.stability.linear import LinearModel
+from damperopt.study.disturbances import Disturbance
 
 
 @pytest.fixture
@@ -50,15 +52,28 @@ def test_a_common_axle_needs_hardly_a_damper(study):
 @pytest.mark.parametrize("study", ["nose_wheel_castering"], indirect=True)
 def test_friction_holds_kicks_up_to_a_border(study):
     abscissa, speed = worst(study, {}, 1.3e3)
-    assert abscissa == pytest.approx(7.92, abs=0.02)
-    assert speed == pytest.approx(6.8, abs=0.2)
-    for breakout, speed, border in ((15, 5, 2.5), (25, 15, 6.3), (35, 25, 26)):
-        held = study.replace(damper__breakout_force=f"{breakout} lbf")
-        for part, rests in ((0.95, True), (1.07, False)):
-            kick = {"kick": {"yaw_rate": part * border}}
-            motion = damperopt.simulate_exactly(held, speed=speed, disturbance=kick, duration=1.5, points=400)
-            still = motion.status == "completed" and not motion["yaw_rate"][-50:].any()
-            assert still == rests, (breakout, speed, part)
+    assert abscissa == pytest.approx(8.66, abs=0.02)
+    assert speed == pytest.approx(11.8, abs=0.2)
+    kick, release = ({"kick": {"yaw_rate": 2.0}}, {"release": {"yaw_angle": np.radians(5.0)}})
+    for pressure, disturbance, speed, torque in ((20, kick, 13.8, 9.64), (31, release, 9.4, 20.6), (40, kick, 9.4, 4.23)):
+        at = study.replace(tyre__pressure=f"{pressure} psi")
+        asked = Disturbance.model_validate(disturbance)
+        for part, rests in ((0.9, False), (1.02, True)):
+            own = with_breakout(at, part * torque)
+            assert comes_to_rest(own, speed, 1.3e3, asked, 2.0) == rests, (pressure, part)
+
+
+@pytest.mark.parametrize("study", ["nose_wheel_castering"], indirect=True)
+def test_least_breakout_against_a_search_of_its_own(study):
+    """Where one speed alone is looked at, it lies within 3 % above the largest of a row that does not rest."""
+    asked = Disturbance.model_validate({"kick": {"yaw_rate": 2.0}})
+    found = least_breakout(study.replace(damper__breakout_force="700 lbf"), asked, [20.0], 1.3e3, 1.0)
+    row = np.array([0.96, 1.0]) * found.torque
+    rest = [comes_to_rest(with_breakout(study, torque), 20.0, 1.3e3, asked, 1.0) for torque in row]
+    assert rest == [False, True]
+    assert found.speed == 20.0
+    slippery = study.replace(damper__breakout_force="0.1 lbf", tyre__friction=0.05)
+    assert least_breakout(slippery, asked, [20.0], 1.3e3, 1e-3).torque is None
 
 
 @pytest.mark.parametrize("study", ["tail_wheel"], indirect=True)
@@ -74,10 +89,10 @@ def test_tail_wheel_ends_in_a_flutter_or_in_shimmy(study):
 @pytest.mark.parametrize("study", ["nose_gear_imported"], indirect=True)
 def test_condensed_frame_needs_little_damping(study):
     abscissa, speed = worst(study, {"c_vane": 1.0}, 30e3)
-    assert abscissa == pytest.approx(0.97, abs=0.01)
+    assert abscissa == pytest.approx(2.13, abs=0.01)
     assert speed == pytest.approx(70.0)
-    assert worst(study, {"c_vane": 2.87}, 30e3)[0] == pytest.approx(-0.5, abs=0.01)
-    assert damperopt.certify(study, {"c_vane": 2.9}, margin=0.5).proved
+    assert worst(study, {"c_vane": 16.71}, 30e3)[0] == pytest.approx(-0.5, abs=0.01)
+    assert damperopt.certify(study, {"c_vane": 16.8}, margin=0.5).proved
 
 
 @pytest.mark.parametrize("study", ["nose_gear_mr"], indirect=True)

@@ -13,6 +13,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from ..errors import ConfigError
 from ..expressions.calculus import Expr, sin
 from ..ports.wheel import Contact, Wheel
 from ..quantities.record import Record, Stiffness, refuse
@@ -69,6 +70,9 @@ def deflected(drag: Drag | None, contact: Contact, radius: Expr) -> Expr:
     if drag is None:
         return 0
     assert contact.wheel is not None
+    if drag.lateral_stiffness is None and contact.deflection is None:
+        allowed = "a stiffness, which this contact line does not know"
+        raise ConfigError(f"gear.drag.lateral_stiffness: missing key; allowed: {allowed}")
     w = contact.deflection if drag.lateral_stiffness is None else contact.side_force / drag.lateral_stiffness
     return (drag.braking(radius) + drag.rolling(contact.wheel.load)) * w
 

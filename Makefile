@@ -34,6 +34,7 @@ benchmark: $(VENV)/installed
 	$(BIN)/python benchmarks/optimise.py
 	$(BIN)/python benchmarks/transients.py
 	$(BIN)/python benchmarks/charts.py
+	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/start.py
 
 # the documentation as HTML; notebooks are run, a warning is an error

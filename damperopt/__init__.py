@@ -35,6 +35,7 @@ _HOME = {
     "gain_schedule": "stability.gain_schedule",
     "joint_boundary": "charts.explicit",
     "json_schema": "study.config",
+    "least_breakout": "motion.breakout",
     "linear_gear": "stability.linear",
     "load": "study.config",
     "load_result": "results",

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
+from .cycles.requirement import check_limit_cycles, cycle_failure
 from .errors import ConfigError, Unfinished
 from .motion.exact import ExactSimulator
 from .optimum.answer import (
@@ -162,8 +163,8 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     """
     if not topologies and not study.variables:
         raise ConfigError(
-            f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
-            f"allowed: {', '.join(optimisable())} (or use 'damperopt analyse')"
+            f"{study.name}: damper.topology: 'rotational' has no design variables with kind '{study.damper.kind}'; allowed: "
+            f"{', '.join(optimisable())}, or kind vane (or use 'damperopt analyse', for kind friction 'damperopt breakout')"
         )
     variants = []
     for topology in topologies or [study.damper.topology]:
@@ -345,6 +346,9 @@ def _checked(
             failures.append(
                 f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN{_times(factor)}"
             )
+    cycles = check_limit_cycles(study, solution.design)
+    if cycles is not None and not cycles.passed:
+        failures.append(cycle_failure(cycles))
     simulated = {} if decay is None else decay.peaks
     rows = margin_rows(study, solution.design, simulated)
     failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]
@@ -384,6 +388,7 @@ def _checked(
             "stability": worst,
             "constraints": constraints,
             "decay": decay,
+            "limit_cycle": cycles,
             "decided_by": weights,
             "loads": load_rows(study, solution.design, simulated),
             "margins": rows,

@@ -23,7 +23,7 @@ import casadi as ca
 from .dampers.base import Context
 from .dampers.control import ACTUATOR, CONTROL_OUTPUTS, Control
 from .errors import ConfigError
-from .expressions.calculus import Expr, partial
+from .expressions.calculus import Expr, absolute, partial
 from .expressions.corners import Corners, Linear
 from .expressions.dae import DAE, NEWTON_STEPS
 from .linkages.elastic import elastic_linkage
@@ -95,7 +95,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     link = elastic_linkage(study, design, stroke, None if strut is None else strut.torsion(load, stroke))
     attachment = gear.attachments(x)["damper"]
     measured = x | {state.name: own for state, own in zip(tyre_states[0], strings[0], strict=True)}
-    context = Context(load, speed, wanted=_wanted(damper, link, measured, speed))
+    context = Context(load, speed, axle=absolute(gear.caster_length), wanted=_wanted(damper, link, measured, speed))
     torque = damper_torque(damper, link, design, corners, attachment, context)
     if damper.actuator is not None:
         torque = _with_actuator(torque, damper.actuator, measured, speed, corners)

@@ -14,7 +14,7 @@ from .answers.loads import LoadRow, MarginRow
 from .answers.older import completed
 from .answers.search import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
 from .answers.stock import StockCandidate, StockResult
-from .answers.verdicts import FINITE, Certificate, DecayCheck, OperatingPoint, Verdict
+from .answers.verdicts import FINITE, Certificate, DecayCheck, LimitCycleCheck, OperatingPoint, Verdict
 from .errors import ConfigError
 from .reading import MOST_RESULT_BYTES, printable, text_of
 
@@ -25,6 +25,7 @@ __all__ = [
     "DecayCheck",
     "DesignResult",
     "Infeasibility",
+    "LimitCycleCheck",
     "LoadRow",
     "LocalOptimum",
     "MarginRow",
@@ -163,6 +164,7 @@ class DesignResult(_Record):
     fail_safe: Certificate | None = None
     verification: Verification | None = None
     decay: DecayCheck | None = None
+    limit_cycle: LimitCycleCheck | None = None
     decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..motion.history import frozen_along, simulate_along
+from ..motion.history import frozen_along, posed_along, simulate_along
 from ..motion.roll import Roll, Stretch, roll_of
 from ..motion.trajectory import Trajectory
 from ..output.folder import run_folder, write_run
@@ -58,6 +58,9 @@ def run_along(
     history = read_history(file)
     own = any(history.column("yaw_torque") or [0.0])
     start = disturbance if asked or not own else None
+    # a question that is not well posed leaves no folder behind
+    posed_along(study, values or study.start, history, start)
+    folder = run_folder(output, f"{stem}-simulation")
     with all_or_nothing():
         motion = simulate_along(study, values, history=history, disturbance=start, engine=engine)
         frozen = frozen_along(study, values, history)
@@ -74,7 +77,6 @@ def run_along(
         write_roll(place / "motion.json", motion, found, start, values or study.start)
         figures.save_each({"trajectory": lambda: figures.roll(motion, found, frozen, f"after {after}")}, place)
 
-    folder = run_folder(output, f"{stem}-simulation")
     write_run(folder, write)
     _show(motion, found, after, sized)
     if words := _beyond(study, history):

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from ..cycles.amplitude_map import AmplitudeMap
 from ..cycles.branches import Question, worded
 from ..cycles.criticality import Criticality
 from ..cycles.edge import Kicker, Threshold
 from ..cycles.orbit import Branch, Orbit
+from ..motion.measure import PEAKS
 from ..quantities.shown import shown
 
-__all__ = ["show_criticality", "show_cycles", "show_threshold"]
+__all__ = ["kept", "show_criticality", "show_cycles", "show_map", "show_threshold"]
 
 FATES = {
     "dies": "dies",
@@ -28,8 +31,14 @@ EXACT = 1e-6
 """Relative error of amplitude and period below which nothing is said of it."""
 
 
-def show_cycles(console: Console, question: Question, branches: Sequence[Branch], begin: str = "hopf") -> None:
-    """Branches in words, the answer first."""
+def show_cycles(
+    console: Console,
+    question: Question,
+    branches: Sequence[Branch],
+    begin: str = "hopf",
+    sized: Mapping[str, float] = {},
+) -> None:
+    """Branches in words, the answer first; beside the loads that the parts are sized for, where they are known."""
     axis, held = question.axis, []
     if axis.name != "speed":
         held.append(worded(question.speed, "m/s"))
@@ -46,18 +55,25 @@ def show_cycles(console: Console, question: Question, branches: Sequence[Branch]
         return
     if not branches:
         console.print(f"\n[bold]no Hopf point[/]: {escape(searched)}", soft_wrap=True)
+        if not question.rest_is_stable([axis.low, axis.high]).any():
+            console.print(
+                "[bold]Rest is unstable[/] all over it, joints closed and without friction: what the gear settles on has no "
+                "beginning in this range; take a wider one, or --from simulation.",
+                soft_wrap=True,
+            )
         console.print(
             "No limit cycle grows out of rest in this range. Cycles that are cut off from rest are not excluded by this: "
             "--from simulation looks for them.",
             soft_wrap=True,
         )
         return
-    stable = [orbit for branch in branches for orbit in branch.orbits if orbit.stable]
+    stable = [orbit for branch in branches for orbit in branch.orbits if orbit.stable and not orbit.beyond]
     head = f"[bold]{len(branches)} branch{'es' * (len(branches) > 1)} of limit cycles[/]: {escape(searched)}"
     console.print(f"\n{head}", soft_wrap=True)
     if stable:
         most = max(stable, key=lambda orbit: orbit.amplitudes["yaw_angle"])
         console.print(f"Largest stable cycle: {_size(most)} at {worded(most.parameter, axis.unit)}", soft_wrap=True)
+        _show_loads(console, stable, sized, axis.unit)
     else:
         console.print(
             "No stable limit cycle is among them: each is a threshold between motions that die and that grow.", soft_wrap=True
@@ -70,6 +86,55 @@ def show_cycles(console: Console, question: Question, branches: Sequence[Branch]
             console.print(f"  accurate to {branch.error:.1g} of amplitude and period (intervals halved)", soft_wrap=True)
         if branch.kind == "hopf":
             _hidden(console, branch)
+
+
+def _show_loads(console: Console, stable: Sequence[Orbit], sized: Mapping[str, float], unit: str) -> None:
+    """Largest peaks of all stable cycles against what the parts are sized for."""
+    flow = stable[0].path.legs[0].flow
+    for name in PEAKS:
+        if name not in sized or name not in flow.units:
+            continue
+        loudest = max(stable, key=lambda orbit: orbit.peaks[name])
+        value, limit = loudest.peaks[name], sized[name]
+        number, shown_unit = shown(value, flow.units[name])
+        console.print(
+            f"  {name.replace('_', ' ')} up to {number} {shown_unit} at {worded(loudest.parameter, unit)}: "
+            f"{100 * value / limit:.3g} % of what the parts are sized for" + (" [red]exceeded[/]" if value > limit else ""),
+            soft_wrap=True,
+        )
+
+
+def kept(console: Console, branches: Sequence[Branch], limit: float) -> bool:
+    """Whether no stable cycle of more yaw [rad] was found and no branch lost; said in words."""
+    largest = " ".join(shown(limit, "rad"))
+    larger = [orbit for branch in branches for orbit in branch.orbits if orbit.stable and orbit.amplitudes["yaw_angle"] > limit]
+    lost = [branch for branch in branches if branch.lost]
+    if larger:
+        words = f"[red]not kept[/]: {len(larger)} stable cycles of more than {largest} were found"
+    elif lost:
+        words = f"[yellow]undecided[/]: none of more than {largest} was found, but {len(lost)} branches were lost"
+    else:
+        words = f"[green]kept[/]: no stable cycle of more than {largest} was found (a search from these seeds, no proof)"
+    console.print(words, soft_wrap=True)
+    return not (larger or lost)
+
+
+def show_map(console: Console, found: AmplitudeMap) -> None:
+    """Where the largest stable cycle of a map lies."""
+    row, column = np.unravel_index(found.yaw.argmax(), found.yaw.shape)
+    if not found.yaw.any():
+        console.print("\n[bold]no stable limit cycle grows out of a Hopf point[/] anywhere in the map", soft_wrap=True)
+    else:
+        at = f"{worded(found.columns[column], found.x.unit)}, {worded(found.rows[row], found.y.unit)}"
+        number = " ".join(shown(float(found.yaw[row, column]), "rad"))
+        console.print(f"\n[bold]Largest stable cycle[/]: yaw {number} at {escape(at)}", soft_wrap=True)
+    console.print(f"{100 * (found.yaw > 0).mean():.3g} % of the map has one.", soft_wrap=True)
+    if found.lost.any():
+        console.print(
+            f"[yellow]{100 * found.lost.mean():.3g} % is not known[/]: a branch was lost, or rest is unstable and no branch "
+            "that begins in this range arrives; take a wider one",
+            soft_wrap=True,
+        )
 
 
 def _size(orbit: Orbit) -> str:

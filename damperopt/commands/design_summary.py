@@ -77,6 +77,16 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
             f"; optimised with {decay.engine}",
             soft_wrap=True,
         )
+    if result.limit_cycle is not None:
+        cycle = result.limit_cycle
+        verdict = "[green]kept[/]" if cycle.passed else "[red]NOT kept[/]"
+        largest = " ".join(number_and_unit(cycle.yaw_angle, "rad")) if cycle.yaw_angle else "none"
+        console.print(
+            f"Limit cycles: {verdict}: largest stable one {largest} at {cycle.speed:.2f} m/s, {cycle.load / 1e3:g} kN, with "
+            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost; required "
+            f"{' '.join(number_and_unit(cycle.limit, 'rad'))}; a search, no proof",
+            soft_wrap=True,
+        )
     if result.decided_by:
         kinds = ", ".join(f"{kind} {weight:.2g} %" for kind, weight in result.decided_by.items())
         console.print(f"What decides the mass, per 1 % of the limits: {kinds}", soft_wrap=True)

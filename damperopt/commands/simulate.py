@@ -49,6 +49,7 @@ def simulate(
     from ..motion.question import output_points, posed
     from ..motion.simulate import Simulator
     from ..motion.trajectory import motion_of
+    from ..optimum.left_out import left_out_by_number
     from ..output.folder import run_folder, write_run
     from ..output.tables import write_motion, write_trajectory
     from ..quantities.record import Force, Speed, Time
@@ -105,8 +106,9 @@ def simulate(
 
     write_run(folder, write)
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
+    left_out = left_out_by_number(study, study.start if values is None else values)
     wave = shortest_wavelength(study, gear, [at_speed], [motion.load])
-    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized, left_out)
     summary.show_contact_line(out, study, wave)
     force = found.peaks.get("damper_torque" if study.damper.ROTARY else "damper_force", 0.0)
     if boils := cavitation(study, study.start if values is None else values, force):

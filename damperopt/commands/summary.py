@@ -92,8 +92,9 @@ def show_motion(
     cycles: int,
     disturbance: str = "",
     sized: Mapping[str, float] = {},
+    left_out: Sequence[str] = (),
 ) -> None:
-    """What a trajectory shows, after what, and beside the loads that the parts were sized for."""
+    """What a trajectory shows, after what, beside the loads that the parts were sized for, and what its model leaves out."""
     console.print(
         f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
     )
@@ -122,6 +123,12 @@ def show_motion(
             shown = number_and_unit(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
             table.add_row(name.replace("_", " "), *shown, *((beside,) if sized else ()))
     console.print(table)
+    _show_left_out(console, left_out)
+
+
+def _show_left_out(console: Console, words: Sequence[str]) -> None:
+    if words:
+        console.print("Left out: " + escape("; ".join(words)), soft_wrap=True, style="dim")
 
 
 def show_analysis(
@@ -204,8 +211,9 @@ def number_and_unit(value: float, unit: str) -> tuple[str, str]:
     return f"{value:.5g}", unit
 
 
-def show_chart(console: Console, record: StabilityChart) -> None:
-    """Families of a chart with the length, kind and frequency of their curves."""
+def show_chart(console: Console, record: StabilityChart, left_out: Sequence[str] = ()) -> None:
+    """Families of a chart with the length, kind and frequency of their curves, and what its model leaves out."""
+    _show_left_out(console, left_out)
     table = Table(box=None, pad_edge=False)
     varied, unit = (record.varied.name, record.varied.unit) if record.varied else ("boundary", "")
     for name in (varied, "curves", "points", "type", "frequency", "corners"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -102,6 +102,23 @@ class Question:
                 raise ConfigError(f"--over: '{over}' has no range; allowed: {over}=LOW:HIGH in {unit}")
             low, high = ends[name]
         return cls(study, design, Axis.of(study, name, low, high), speed or envelope.speed.max, load or max(envelope.loads))
+
+    def rest_is_stable(self, values: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Whether small motions die at values (m,) of what is varied, joints closed."""
+        flow = Flow(self.study)
+        A = np.array([flow.state_matrix(self.parameters(flow, float(value))) for value in values])
+        found: np.ndarray = np.linalg.eigvals(A).real.max(axis=1) < 0
+        return found
+
+    def at(self, name: str, value: float) -> Question:
+        """With another value of a quantity [SI]."""
+        if name in self.design:
+            return replace(self, design={**self.design, name: value})
+        if name == "speed":
+            return replace(self, speed=value)
+        if name == "vertical_load":
+            return replace(self, load=value)
+        return replace(self, study=self.study.replace(**{name.replace(".", "__"): value}))
 
     def parameters(self, flow: Flow, value: float) -> np.ndarray:
         """Of a flow, at a value of what is varied."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from .. import interrupts
 from .collocation import Path
 from .floquet import shape
 from .flow import Flow
@@ -136,6 +137,7 @@ def follow(
     orbits: list[Orbit] = []
     walk = _Walk(along, first, ahead)
     for orbit in walk.orbits():
+        interrupts.check()
         report(orbit)
         orbits.append(orbit)
         if len(orbits) >= MOST:
@@ -179,9 +181,7 @@ class _Walk:
         """The tangent here, and the orbit a step along it, shortened until there is one."""
         along, here = self._along, self.here
         metric = along.metric(here.path)
-        direction = tangent(here, along.conditions(here.path, metric), along.direction, metric, self._ahead)
-        if direction.along(self._ahead, metric) < 0:
-            direction = direction.times(-1)
+        direction = tangent(here, metric, self._ahead)
         branch = _Step(along, here, direction, metric)
         step = min(step, CAUTIOUS * _to_rest(here.path, direction, metric))
         while step >= LEAST:
@@ -226,9 +226,7 @@ class _Step:
 
     def slope(self, found: Corrected) -> float:
         """Of the parameter along the branch."""
-        conditions = self.along.conditions(found.path, self.metric)
-        found_direction = tangent(found, conditions, self.along.direction, self.metric, self.direction)
-        return found_direction.parameter * np.sign(found_direction.along(self.direction, self.metric))
+        return tangent(found, self.metric, self.direction).parameter
 
     def special(self, step: float, there: Corrected, before: Orbit, after: Orbit) -> Iterator[Orbit]:
         """Folds, and where multipliers cross the unit circle, between here and a step ahead."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from .. import interrupts
 from ..errors import ConfigError
 from ..motion.exact import ExactSimulator
 from ..motion.measure import fastest_rate
@@ -92,7 +93,7 @@ class Kicker:
         stretches: list[np.ndarray] = []
         yaw = self.simulator.state_names.index("yaw_angle")
         first, before = np.zeros(0), np.zeros(0)
-        for states, whole in self.stretches(speed, load, size):
+        for states, whole in self.stretches(speed, load, self.disturbance(size)):
             stretches.append(states)
             if not whole:
                 return "leaves", stretches
@@ -106,11 +107,14 @@ class Kicker:
             before = sizes
         return "stays", stretches
 
-    def stretches(self, speed: float, load: float, size: float, most: int = CHUNKS) -> Iterator[tuple[np.ndarray, bool]]:
+    def stretches(
+        self, speed: float, load: float, disturbance: Mapping[str, Any], most: int = CHUNKS
+    ) -> Iterator[tuple[np.ndarray, bool]]:
         """A motion stretch by stretch: states (k, n), and whether the model holds to the end of it."""
         time, names, start = self.chunk(speed, load), (*self.simulator.names, "unclosed"), None
         for number in range(most):
-            rows = self.simulator.stretch(speed, load, self.disturbance(size), time, start)
+            interrupts.check()
+            rows = self.simulator.stretch(speed, load, disturbance, time, start)
             shown = np.vstack([rows.T, np.zeros(len(rows))])
             if number == 0:
                 refuse_start(shown[:, :1], names, self.study)

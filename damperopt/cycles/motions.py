@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +29,8 @@ __all__ = ["Seeder", "from_motions"]
 VALUES = 3
 """Of what is varied, at which motions are looked at, ends included."""
 
-RELEASES = (2e-3, 2e-2, 0.15)
-"""Yaw angles [rad] from which the gear is let go."""
+RELEASES = (("yaw_angle", 2e-3), ("yaw_angle", 2e-2), ("yaw_angle", 0.15), ("bending_angle", 1e-2))
+"""What the gear is let go from [rad]; the last one, where it bends, wakes the lateral mode."""
 
 SETTLED = 1e-3
 """Relative change of the amplitude from stretch to stretch at which a motion is handed to Newton's method."""
@@ -82,26 +82,20 @@ class Seeder:
 
     def kicker(self, value: float) -> tuple[Kicker, float, float]:
         """Exact motions at a value of what is varied, and the speed [m/s] and load [N] there."""
-        q, name = self.question, self.question.axis.name
-        speed, load = (value if name == key else given for key, given in (("speed", q.speed), ("vertical_load", q.load)))
-        study, design = q.study, dict(q.design)
-        if name in design:
-            design[name] = value
-        elif name not in ("speed", "vertical_load"):
-            study = study.replace(**{name.replace(".", "__"): value})
-        return Kicker(self._simulator(study, design)), speed, load
+        there = self.question.at(self.question.axis.name, value)
+        return Kicker(self._simulator(there.study, there.design)), there.speed, there.load
 
-    def _simulator(self, study: Study, design: dict[str, float]) -> ExactSimulator:
-        key = (study.model_dump_json(), repr(design))
+    def _simulator(self, study: Study, design: Mapping[str, float]) -> ExactSimulator:
+        key = (study.model_dump_json(), repr(dict(design)))
         if self._kept is None or self._kept[0] != key:
             self._kept = key, ExactSimulator(study, design)
         return self._kept[1]
 
-    def settled(self, value: float, size: float) -> Found | None:
+    def settled(self, value: float, size: float, name: str = "yaw_angle") -> Found | None:
         """The cycle on which a release settles; None where it dies, leaves the model or does not settle."""
         kicker, speed, load = self.kicker(value)
         largest, before = np.full(self.flow.n, 1e-300), np.zeros(self.flow.n)
-        for states, whole in kicker.stretches(speed, load, size, PATIENCE):
+        for states, whole in kicker.stretches(speed, load, {"release": {name: size}}, PATIENCE):
             sizes = np.ptp(states, axis=0)
             largest = np.maximum(largest, sizes)
             moves = float((sizes / largest).max())
@@ -223,7 +217,9 @@ def _repeated(path: Path) -> tuple[np.ndarray, np.ndarray]:
     return cycle, states
 
 
-def from_motions(question: Question, report: Callable[[Orbit], None] = lambda orbit: None) -> list[Branch]:
+def from_motions(
+    question: Question, report: Callable[[Orbit], None] = lambda orbit: None, values: Sequence[float] | None = None
+) -> list[Branch]:
     """Branches through cycles that motions lead to, joints as they are.
 
     Parameters
@@ -231,24 +227,30 @@ def from_motions(question: Question, report: Callable[[Orbit], None] = lambda or
     question : Question
     report : callable
         Called with each orbit.
+    values : sequence of float or None
+        Of what is varied, at which motions are looked at; None: `VALUES` over the range.
     """
     seeder, axis = Seeder(question), question.axis
     branches: list[Branch] = []
-    for value in np.linspace(axis.low, axis.high, VALUES):
+    for value in np.linspace(axis.low, axis.high, VALUES) if values is None else values:
         for found, words in _seeds(seeder, float(value), branches):
             branches.append(_through(seeder, found, f"{words} at {worded(float(value), axis.unit)}", report))
     return branches
 
 
 def _seeds(seeder: Seeder, value: float, branches: Sequence[Branch]) -> Iterator[tuple[Found, str]]:
-    for size in RELEASES:
+    all_live = True
+    for name, size in RELEASES:
+        if name not in seeder.flow.state_names:
+            continue
         try:
-            found = seeder.settled(value, size)
+            found = seeder.settled(value, size, name)
         except ConfigError:  # the release begins beyond the model
             continue
+        all_live &= found is not None
         if found is not None and not _known(found, branches):
-            yield found, f"motion after a release of {size:g} rad"
-    between = seeder.between(value)
+            yield found, f"motion after a release of {name.replace('_', ' ')} {size:g} rad"
+    between = None if all_live else seeder.between(value)
     if between is not None and not _known(between, branches):
         yield between, "motion between releases that die and that do not"
 
@@ -282,8 +284,7 @@ def _onward(seeder: Seeder, found: Found, sign: float, report: Callable[[Orbit],
     for _ in range(MOST_REBUILT):
         along, here = found.along, found.corrected
         metric = along.metric(here.path)
-        ahead = tangent(here, along.conditions(here.path, metric), along.direction, metric, None)
-        ahead = ahead.times(sign if ahead.parameter > 0 else -sign)
+        ahead = tangent(here, metric, None).times(sign)
         more, end, last = follow(along, here, ahead, report)
         orbits += more
         if end != "changed":

@@ -62,10 +62,11 @@ class Tangent:
 
 @dataclass(frozen=True)
 class Corrected:
-    """An orbit, its linearised legs and conditions, and how many iterations it took."""
+    """An orbit, its linearised legs, equations and gradients of conditions, and how many iterations it took."""
 
     path: Path
     legs: tuple[Linearised, ...]
+    system: np.ndarray
     gradients: np.ndarray
     iterations: int
 
@@ -131,22 +132,20 @@ def corrected(
         if not size < 1e3 or min(leg.duration for leg in path.legs) <= 0:
             raise NoOrbit
         if size < CONVERGED:
-            return Corrected(path, tuple(legs), gradients, iteration + 1)
+            return Corrected(path, tuple(legs), system, gradients, iteration + 1)
     raise NoOrbit
 
 
-def tangent(
-    found: Corrected, conditions: Sequence[Condition | Phase], direction: np.ndarray, metric: Metric, along: Tangent | None
-) -> Tangent:
-    """Direction of the branch at an orbit, of length 1, on the side of `along`; None: to larger parameters."""
-    _, system, right, _ = _system(found.path, conditions, direction, metric, along)
-    right = np.zeros_like(right)
-    right[-1] = 1.0
+def tangent(found: Corrected, metric: Metric, ahead: Tangent | None) -> Tangent:
+    """Direction of the branch at an orbit, of length 1, on the side of `ahead`; None: to larger parameters."""
+    right = np.zeros(len(found.system))
+    right[-1] = 1.0  # along what the orbit was sought orthogonal to, or the parameter
     try:
-        step = _unfolded(found.legs, np.linalg.solve(system, right), constant=0.0)
+        step = _unfolded(found.legs, np.linalg.solve(found.system, right), constant=0.0)
     except np.linalg.LinAlgError:
         raise NoOrbit from None
-    return step.times(1 / np.sqrt(step.along(step, metric)))
+    side = step.parameter if ahead is None else step.along(ahead, metric)
+    return step.times(np.copysign(1 / np.sqrt(step.along(step, metric)), side))
 
 
 def _unfolded(legs: Sequence[Linearised], d: np.ndarray, constant: float = 1.0) -> Tangent:

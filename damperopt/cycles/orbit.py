@@ -21,6 +21,9 @@ PER_INTERVAL = 8
 UNKNOWN_STEPS = 3
 """Of Newton's method for the unknowns between stages."""
 
+LOST = ("lost", "another order", "the most orbits")
+"""Words of ends at which a branch goes on, unseen."""
+
 NEUTRAL = 1e-9
 """By which a multiplier must exceed 1 to count as growing: rounding."""
 
@@ -102,6 +105,11 @@ class Branch:
     ends: str
     kind: Literal["hopf", "simulation"]
     error: float
+
+    @property
+    def lost(self) -> bool:
+        """Whether an end of it is where the method failed, and not where the branch ends or leaves the range."""
+        return any(word in self.begins + self.ends for word in LOST)
 
     @property
     def special(self) -> tuple[Orbit, ...]:

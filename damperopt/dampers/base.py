@@ -32,6 +32,8 @@ class Context:
         [K]; None: at the reference of the damper's numbers.
     current : Expr
         [A]; 0: none.
+    axle : Expr
+        Lever of the axle about the strut axis, the caster length [m].
     wanted : Expr
         Force against the stroke that a control law wants of the damper [N]; None: there is no law.
     outputs : mapping of str to Expr
@@ -42,6 +44,7 @@ class Context:
     speed: Expr = 0
     temperature: Expr = None
     current: Expr = 0
+    axle: Expr = 0
     wanted: Expr = None
     outputs: Mapping[str, Expr] = field(default_factory=dict)
 

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
+    "cycle_map": "cycles",
     "cycles": "cycles",
     "decay": "motion",
     "mass_by_part": "design",

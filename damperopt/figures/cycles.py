@@ -9,12 +9,13 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..cycles.amplitude_map import AmplitudeMap
 from ..cycles.edge import Threshold
 from ..cycles.orbit import Branch
 from ..quantities.shown import axis_label, scale
 from .style import COLOURS, OTHERS, plain, quantity_words, styled
 
-__all__ = ["cycles", "threshold"]
+__all__ = ["cycle_map", "cycles", "threshold"]
 
 MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "D", "loss of symmetry": "^"}
 
@@ -99,5 +100,32 @@ def threshold(found: Sequence[Threshold], kind: str, unit: str, title: str = "")
         axis.set(xlabel="Speed [m/s]", ylabel=axis_label(f"{kind.capitalize()} of yaw", unit))
         axis.set_ylim(bottom=0)
         axis.legend(frameon=False)
+        axis.set_title(plain(title), fontsize=10)
+        return figure
+
+
+def cycle_map(found: AmplitudeMap, title: str = "") -> Any:
+    """Amplitude of yaw of the largest stable limit cycle over two quantities; white where there is none, grey: not known.
+
+    Parameters
+    ----------
+    found : AmplitudeMap
+    title : str
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    x, y = (scale(axis.unit)[1] * values for axis, values in ((found.x, found.columns), (found.y, found.rows)))
+    yaw = np.where(found.yaw > 0, scale("rad")[1] * found.yaw, np.nan)
+    with styled():
+        figure, axis = plt.subplots(figsize=(8, 5))
+        axis.grid(False)
+        unknown = np.where(found.lost & (found.yaw == 0), 0.7, np.nan)
+        axis.pcolormesh(x, y, unknown, shading="nearest", cmap="gray", vmin=0, vmax=1)
+        mesh = axis.pcolormesh(x, y, yaw, shading="nearest", cmap="viridis")
+        figure.colorbar(mesh, ax=axis, label=axis_label("Amplitude of yaw", "rad"))
+        axis.set_xlabel(axis_label(quantity_words(found.x.name), found.x.unit))
+        axis.set_ylabel(axis_label(quantity_words(found.y.name), found.y.unit))
         axis.set_title(plain(title), fontsize=10)
         return figure

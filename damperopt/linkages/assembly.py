@@ -16,7 +16,7 @@ from ..quantities.kinds import home_of, kinds, tags_of, union_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from .base import Layout
-from .joints import EndStop, Freeplay, Joints
+from .joints import EndStop, Freeplay, Joints, RotaryEndStop, RotaryFreeplay, RotaryJoints
 
 __all__ = ["Assembly", "assemblies", "assembly", "assembly_type", "dampers", "layouts"]
 
@@ -75,12 +75,12 @@ class Assembly:
         return tuple(part for kind in parts for part in kind.elastic(self, design, study, stroke))
 
     @property
-    def play(self) -> Freeplay | None:
-        """Of the apex joint."""
+    def play(self) -> Freeplay | RotaryFreeplay | None:
+        """Of the apex joint, or in front of what stands about the yaw axis."""
         return getattr(self, "freeplay", None)
 
     @property
-    def stop(self) -> EndStop | None:
+    def stop(self) -> EndStop | RotaryEndStop | None:
         """Of the damper's stroke."""
         return getattr(self, "end_stop", None)
 
@@ -91,7 +91,9 @@ class Assembly:
 
     def leaves_out(self) -> tuple[str, ...]:
         """What layout, damper and joints do not hold, in words."""
-        parts: list[Any] = [part for part in (self.LAYOUT, self.KIND, Joints, Controlled) if isinstance(self, part)]
+        parts: list[Any] = [
+            part for part in (self.LAYOUT, self.KIND, Joints, RotaryJoints, Controlled) if isinstance(self, part)
+        ]
         return tuple(words for part in parts if hasattr(part, "leaves_out") for words in part.leaves_out(self))
 
 
@@ -106,7 +108,7 @@ def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
     Returns
     -------
     type
-        With the fields of both, of control, and of the joints where there is a linkage.
+        With the fields of both, of control, and of play and stop.
 
     Raises
     ------
@@ -123,7 +125,7 @@ def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
     if twice:
         words = f"{home_of(layout)} and {home_of(damper)} both declare '{twice[0]}'"
         raise ConfigError(f"{words}; allowed: each key once")
-    bases = (Assembly, layout, damper, *(() if layout.ROTARY else (Joints,)), Controlled)
+    bases = (Assembly, layout, damper, RotaryJoints if layout.ROTARY else Joints, Controlled)
     facts = {
         "LAYOUT": layout,
         "KIND": damper,

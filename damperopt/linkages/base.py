@@ -79,6 +79,20 @@ class Layout(Record):
         """
         raise NotImplementedError  # every layout says it
 
+    def linkage_of(self, study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+        """The linkage of a study, for layouts whose levers hang on sections too.
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols: material, mass model.
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        stroke : Expr
+            Of the shock strut [m].
+        """
+        return self.linkage(design, study.material.youngs_modulus, stroke)
+
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
         """Members at rest: one list to draw, to weigh and to check.
 

@@ -220,7 +220,7 @@ def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0, to
     Linkage
     """
     damper = study.damper
-    link = damper.linkage(design, study.material.youngs_modulus, stroke)
+    link = damper.linkage_of(study, design, stroke)
     if damper.ROTARY:
         stiffness = link.stiffness if torsion is None else torsion
         return replace(link, stiffness=stiffness, series=damper.series(design))

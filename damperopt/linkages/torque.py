@@ -53,6 +53,7 @@ ROTARY_OUTPUTS = (
     Output("damper_torque", "N m", "against the motion"),
     Output("spring_angle", "rad"),
     Output("spring_torque", "N m"),
+    Output("stop_torque", "N m", "of the end stop"),
 )
 """The same where spring and damper act about the yaw axis itself."""
 

@@ -11,8 +11,8 @@ gives with S = 0 the deflection of the arm's tip, 1 + 3 a/l times that of a clam
 3 a^2/(2 l (l + 3 a)) of that, which takes stroke from the damper; and at its least over V (the apex held) the stiffness along
 the damper, 1/k = (L/l)^2 a^3/(E I) (2/3 - 3 a/(4 (l + 3 a))).
 
-At limit load V pushes the arm with V b/L and the half beside it with V l/L. What that shortens them is left out: it takes a few
-parts in a thousand of the damper's stroke.
+V also pushes the arm with V b/L and the half beside it with V l/L. The arm is shorter by 3 I b/(l^2 L A (1 + 3 a/l)) of its
+deflection, which takes stroke from the damper as a retreat of its root by (L^2 - b^2)/(L l) of that would.
 """
 
 from __future__ import annotations
@@ -57,12 +57,22 @@ class Utas(TorqueLinks):
         printed = 2 * E * I_arm * ell * sin_alpha / R**2, c_lambda * ell**2 * b / (10 * R)
         return from_lengths(3 * E * I_arm / R**3 / self._softer(b, R), arm_tip, damper, ell, R, R), printed
 
-    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:
-        """Arm from (0, b, h), damper from (0, -b, h), both to the apex."""
+    def linkage_of(self, study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+        """With the arm as short as its shear pushes it, V b/L over E A/l."""
+        E = study.material.youngs_modulus
+        if self.geometry != "spatial" or not self.is_sized("arm"):
+            return self.linkage(design, E, stroke)
+        return self.spatial(design, E, stroke, area(study.mass.arm_section, design["I_arm"]))
+
+    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, section: Expr = None) -> Linkage:
+        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without a section [m^2] keeps its length."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         l_arm = sqrt(L**2 + b**2)
         a = self.links.overhang(b)
         retreat = 3 * a**2 / (2 * l_arm * (l_arm + 3 * a)) if self.is_sized("arm") else 0
+        if section is not None:
+            shorter = 3 * design["I_arm"] * b / (l_arm**2 * L * section * self._softer(b, l_arm))
+            retreat = retreat + shorter * (L**2 - b**2) / (L * l_arm)
         return closed_loop(
             design,
             3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm),
@@ -75,12 +85,6 @@ class Utas(TorqueLinks):
             spring_lever=ell * l_arm / L,
             damper_lever=ell * (2 * b / l_arm - retreat),
         )
-
-    def leaves_out(self) -> tuple[str, ...]:
-        """What holds the hinges, and the shortening of the arm."""
-        if not self.is_sized("arm"):
-            return super().leaves_out()
-        return (*super().leaves_out(), "shortening of the arm that its shear brings: damping ratios up to 0.7 % too high")
 
     def _softer(self, b: Expr, l_arm: Expr) -> Expr:
         """Deflection of the tip over that of an arm clamped at its root."""

@@ -32,7 +32,7 @@ from .integrators import ENGINES, Integrator, best_engine
 from .question import refuse_start, valid_part
 from .trajectory import Trajectory
 
-__all__ = ["Frozen", "frozen_along", "simulate_along"]
+__all__ = ["Frozen", "frozen_along", "posed_along", "simulate_along"]
 
 MOST_STEPS = 64
 """Output steps of one call of an integrator."""
@@ -104,19 +104,32 @@ def simulate_along(
     ConfigError
         If the question is not well posed, or nothing disturbs the gear.
     """
+    if engine not in ("auto", "exact", *ENGINES):
+        raise ConfigError(f"engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
     history = history if isinstance(history, History) else read_history(history)
+    model, values = LinearModel(study), study.start if design is None else dict(design)
+    course, points = posed_along(study, values, history, disturbance, model)
+    if engine == "exact":
+        exact = ExactSimulator(study, values, model, course.own_stroke)
+        return exact.along(history, disturbance, min(tolerance, 1e-10))
+    engine = best_engine() if engine == "auto" else engine
+    return _Roll(study, [values[name] for name in model.design_names], course, engine, tolerance).motion(points)
+
+
+def posed_along(
+    study: Study,
+    design: Mapping[str, float],
+    history: History,
+    disturbance: Disturbance | Mapping[str, Any] | None,
+    model: LinearModel | None = None,
+) -> tuple[Course, int]:
+    """Course and output points of a motion along a history, if the question is well posed; else `ConfigError`."""
     if disturbance is None and not any(history.column("yaw_torque") or [0.0]):
         raise ConfigError("disturbance: nothing disturbs the gear; allowed: a disturbance, or a history with yaw_torque")
-    own_stroke = history.column("stroke") is not None
-    if engine == "exact":
-        return ExactSimulator(study, design, own_stroke=own_stroke).along(history, disturbance, min(tolerance, 1e-10))
-    if engine not in ("auto", *ENGINES):
-        raise ConfigError(f"engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
-    model, values = LinearModel(study), study.start if design is None else dict(design)
-    gear = model.at(values)
+    model = LinearModel(study) if model is None else model
+    gear = model.at(design)
     course = Course.of(history, study, tuple(state.name for state in model.states), disturbance)
-    engine = best_engine() if engine == "auto" else engine
-    return _Roll(study, [values[name] for name in model.design_names], course, engine, tolerance).motion(course.points(gear))
+    return course, course.points(gear)
 
 
 class _Roll:

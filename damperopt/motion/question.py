@@ -97,7 +97,9 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
     limits += [(name, slip_range, slip) for name in names if name.startswith("slip_angle")]  # of every wheel
     stop = study.damper.stop
     if stop is not None and stop.stiffness is None:
-        limits.append(("damper_stroke", stop.stroke, f"the damper meets its stop at {stop.stroke * 1e3:.4g} mm"))
+        rotary = study.damper.ROTARY
+        where = f"{math.degrees(stop.stroke):.4g} deg" if rotary else f"{stop.stroke * 1e3:.4g} mm"
+        limits.append(("damper_angle" if rotary else "damper_stroke", stop.stroke, f"the damper meets its stop at {where}"))
     first, message = values.shape[1], ""
     for name, limit, words in limits:
         beyond = np.flatnonzero(~(np.abs(values[names.index(name)]) <= limit))

@@ -172,7 +172,11 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     stop = study.damper.stop
     if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
         longer = ("damper.end_stop.stroke",)
-        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", longer, ratio=True))
+        blocks.append(
+            Constraint(
+                "end_stop", stop.stroke, sized.event.stroke, True, "rad" if study.damper.ROTARY else "m", longer, ratio=True
+            )
+        )
     most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
     if study.damper.has_sized_parts() and most is not None:
         width = study.damper.links.width(design["L"])

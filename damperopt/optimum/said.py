@@ -48,7 +48,7 @@ def said_of(study: Study, result: DesignResult, gear: LinearGear) -> dict[str, A
     boils = cavitation(study, result.design, max(shown, result.limit_event.get("damper_force", 0.0)))
     return {
         "verdict": "undecided" if proof is None else proof.found,
-        "witness": {} if proof is None or proof.counterexample is None else _witness(gear, *proof.counterexample),
+        "witness": {} if proof is None or proof.counterexample is None else _witness(study, gear, *proof.counterexample),
         "covers": tuple(covers(study)),
         "leaves_out": (*_contact_line(study, gear), *left_out_by_number(study, result.design), *leaves_out(study)),
         "rests_on": rests_on(study, result.design),
@@ -61,9 +61,10 @@ def _contact_line(study: Study, gear: LinearGear) -> tuple[str, ...]:
     return contact_line_words(study, shortest_wavelength(study, gear)) if study.tyre.contact.least_wave() else ()
 
 
-def _witness(gear: LinearGear, speed: float, load: float) -> dict[str, float]:
+def _witness(study: Study, gear: LinearGear, speed: float, load: float) -> dict[str, float]:
     """Point of the envelope, and the frequency at which the gear moves there [rad/s]."""
-    return {"speed": speed, "load": load, "frequency": abs(float(gear.roots([speed], [load], 1)[0, 0].imag))}
+    stroke = {} if study.gear.strut is None else {"stroke": float(study.gear.stroke(load))}
+    return {"speed": speed, "load": load, **stroke, "frequency": abs(float(gear.roots([speed], [load], 1)[0, 0].imag))}
 
 
 def yaw_frequencies(study: Study, gear: LinearGear) -> list[float]:

@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from ..cycles.amplitude_map import AmplitudeMap
 from ..cycles.criticality import Criticality
 from ..cycles.edge import Kicker, Threshold
 from ..cycles.orbit import Branch, Orbit
 from ..stability.critical import CriticalSpeed
 
-__all__ = ["branch_record", "write_branches", "write_critical", "write_cycle", "write_threshold"]
+__all__ = ["branch_record", "write_branches", "write_critical", "write_cycle", "write_map", "write_threshold"]
 
 
 def write_branches(folder: Path, branches: Sequence[Branch], question: Mapping[str, Any]) -> None:
@@ -110,3 +111,14 @@ def write_threshold(folder: Path, found: Sequence[Threshold], kicker: Kicker, qu
         for t in found:
             sizes = ["" if value is None else f"{value:.9g}" for value in (t.dies, t.not_dies)]
             writer.writerow([f"{t.speed:.12g}", f"{t.load:.12g}", *sizes, t.fate])
+
+
+def write_map(path: Path, found: AmplitudeMap) -> None:
+    """Largest stable cycles over two quantities as CSV, one row per point; SI."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        axes = [f"{axis.name} [{axis.unit}]" for axis in (found.x, found.y)]
+        writer.writerow([*axes, "amplitude of yaw_angle [rad]", "branch lost"])
+        for k, y in enumerate(found.rows):
+            for i, x in enumerate(found.columns):
+                writer.writerow([f"{x:.12g}", f"{y:.12g}", f"{found.yaw[k, i]:.9g}", str(bool(found.lost[k, i])).lower()])

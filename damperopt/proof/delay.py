@@ -29,6 +29,7 @@ import numpy as np
 from ..errors import ConfigError
 from ..results import Certificate
 from ..stability.linear import LinearGear, LinearModel
+from ..study.scope import place_words
 from ..study.study import Study
 from .boxes import Box, Strips
 from .damping import Interval
@@ -140,6 +141,7 @@ class _Proof:
         model: LinearModel,
         characteristic: Quasipolynomial | OverDamping | None = None,
     ):
+        self._study = study
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
         self._strips = Strips(characteristic or Quasipolynomial(study, structure_of(model), design), margin)
         self._boxes = 0
@@ -260,7 +262,7 @@ class _Proof:
         return self._outcome("refuted", (V, F), frequency, words)
 
     def _place(self, V: Q, F: Q) -> str:
-        return _place(V, F)
+        return place_words(self._study, (float(V), float(F)))
 
     def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
         envelope, place = self._envelope, None if point is None else (float(point[0]), float(point[1]))
@@ -304,7 +306,7 @@ class _OverDamping(_Proof):
         return self._model_at(self._linear.factor(float(F))), self._load
 
     def _place(self, V: Q, F: Q) -> str:
-        return f"{_place(V, Q(*self._load.as_integer_ratio()))}, {float(self._linear.factor(F)):.6g} times the damping"
+        return f"{place_words(self._study, (float(V), self._load))}, {float(self._linear.factor(F)):.6g} times the damping"
 
     def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
         factor, place = None, None
@@ -312,10 +314,6 @@ class _OverDamping(_Proof):
             factor, place = float(self._linear.factor(point[1])), (point[0], Q(*self._load.as_integer_ratio()))
         made = super()._outcome(verdict, place, frequency, reason)
         return replace(made, method="balls, damping", damping=self._interval.factors, damping_factor=factor)
-
-
-def _place(V: Q, F: Q) -> str:
-    return f"{float(V):.6g} m/s, {float(F) / 1e3:.6g} kN"
 
 
 def _intervals(ends: tuple[Q, Q], ratio: float) -> list[tuple[Q, Q]]:

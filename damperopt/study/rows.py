@@ -16,6 +16,9 @@ from ..reading import printable, quoted, text_of
 __all__ = ["row_of", "rows_of"]
 
 
+BYTE_ORDER_MARK = "\ufeff"
+"""With which spreadsheets begin a file."""
+
 BYTES_OF_A_ROW = 400
 """At most, on average."""
 
@@ -42,9 +45,10 @@ def rows_of(path: str | Path, model: type[BaseModel], most: int) -> tuple[int, d
         With ``file:line: column: what; allowed: ...``.
     """
     file = printable(path)
+    text = text_of(path, "a readable CSV file", BYTES_OF_A_ROW * most).removeprefix(BYTE_ORDER_MARK)
     lines = [
         (position, line)
-        for position, line in enumerate(text_of(path, "a readable CSV file", BYTES_OF_A_ROW * most).split("\n"), 1)
+        for position, line in enumerate(text.split("\n"), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:

@@ -7,7 +7,7 @@ from typing import Any
 from ..quantities.temperature import ZERO_CELSIUS
 from .study import Study
 
-__all__ = ["covers", "leaves_out"]
+__all__ = ["covers", "leaves_out", "place_words"]
 
 
 def covers(study: Study) -> list[str]:
@@ -68,6 +68,12 @@ def _stroke(study: Study) -> list[str]:
     ends = [f"{1e3 * study.gear.stroke(load):.4g} mm at {load / 1e3:.4g} kN" for load in dict.fromkeys((light, heavy))]
     words = f"At each load the shock strut stands in balance ({' to '.join(ends)}), and links, height and stiffness follow it"
     return [f"{words}; its motion is no part of the gear (quasi-static). Parts are sized with it fully out."]
+
+
+def place_words(study: Study, point: tuple[float, float]) -> str:
+    """A speed [m/s] and a load [N], with the stroke of a shock strut in balance."""
+    stroke = "" if study.gear.strut is None else f", stroke {1e3 * float(study.gear.stroke(point[1])):.4g} mm"
+    return f"{point[0]:.6g} m/s, {point[1] / 1e3:.6g} kN{stroke}"
 
 
 def _uncertain(study: Study) -> list[str]:

@@ -76,6 +76,12 @@ class Study(Record):
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        cycle = self.requirements.largest_limit_cycle if self.requirements else None
+        for i, speed in enumerate(cycle.speeds or () if cycle else ()):
+            low, high = self.envelope.speed.min, self.envelope.speed.max
+            if not low <= speed <= high:
+                allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
+                raise refuse(f"requirements.largest_limit_cycle.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
         for load in self.envelope.samples(LOADS):
             if words := self.beyond_data(load):
                 allowed = "loads that tyre and strut have data for"

@@ -191,6 +191,7 @@ class StringLine(ContactLine):
         its rate there is `rear`, v2' - V v2/sigma. Source: Takacs, Orosz & Stepan (2009).
         """
         per_F, per_M, p, beta = *_per_slip(sigma, a), self.weights(sigma, a), self.side_damping()
+        assert beta is not None
         front = slide - a * turn
         tan_F = beta * (p.front * front + p.rear * rear + p.inside * 2 * a * slide) / per_F
         tan_M = -beta * (p.ends * (front - rear) - p.twist * 2 * a**3 / 3 * turn) / per_M

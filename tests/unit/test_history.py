@@ -19,7 +19,7 @@ time [ms], speed [kt], load [kN], stroke [mm]
 
 def test_units_and_remarks(tmp_path):
     file = tmp_path / "roll.csv"
-    file.write_text(GOOD)
+    file.write_text("\ufeff" + GOOD.replace("\n", "\r\n"), encoding="utf-8", newline="")  # as spreadsheets write it
     found = read_history(file)
     assert found.column("time") == [0, 0.5]
     assert found.column("speed") == pytest.approx([100 * 1852 / 3600, 90 * 1852 / 3600])

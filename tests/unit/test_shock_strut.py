@@ -11,6 +11,7 @@ import damperopt
 from damperopt import ConfigError
 from damperopt.gears.strut import GasSpring
 from damperopt.linkages.base import reach_and_height
+from damperopt.optimum.problem import DesignProblem
 
 GAS = {"pressure": "1.2 MPa", "area": "0.03 m^2", "volume": "0.015 m^3", "exponent": 1.1}
 LATERAL = {"inertia": 600.0, "stiffness": 6.1e6, "damping": 300.0, "height": 2.5}
@@ -90,6 +91,22 @@ def test_torsion_over_load_stands_in_front_of_the_linkage_or_in_the_place_of_the
     found = damperopt.linear_gear(bare.replace(gear__strut={**still, "torsional_stiffness": own}))
     expected = damperopt.linear_gear(bare.replace(damper__torsional_stiffness=1.4e5))
     np.testing.assert_allclose(found.roots(20.0, 9e3), expected.roots(20.0, 9e3), rtol=1e-12)
+
+
+def test_lengths_hold_fully_in_and_the_working_stroke_at_the_largest_load(configs):
+    """Boeing's layout by hand: reach, lugs and apex at the travel; the stroke under a torque T is T/(k_lambda ell)."""
+    study = damperopt.load(configs / "landing_roll.yaml").replace(tyre__contact="leading_point")
+    design = {"c_lambda": 7e3, "k_lambda": 2e7, "L": 0.45, "gamma": math.radians(24)}
+    found = {name: value for name, (value, _) in DesignProblem(study).values(design).items()}
+    h, travel, stroke = 0.45 * math.cos(math.radians(24)), 0.36, study.gear.stroke(100e3)
+    assert found["lug_distance_max"] == pytest.approx(2 * h)
+    assert found["lug_distance_min"] == pytest.approx(2 * h - travel)
+    assert found["reach_min"] == pytest.approx(0.45 * math.sin(math.radians(24)))
+    assert found["reach_max"] == pytest.approx(math.sqrt(0.45**2 - (h - travel / 2) ** 2))
+    assert found["tyre_clearance"] == pytest.approx(h - travel / 2 + 0.3 - 0.36)
+    ell = math.sqrt(0.45**2 - (h - stroke / 2) ** 2)
+    torque = float(study.loads.limit_torque(study, load=100e3))  # of a chain whose stiffness is given
+    assert found["working_stroke"] == pytest.approx(torque / (2e7 * ell))
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,10 @@ class Drag(Record):
 
     def leaves_out(self) -> tuple[str, ...]:
         """Words."""
-        return ("the grip that a steady drag takes from the side force, and what it does to stiffness and speed (gear.drag)",)
+        return (
+            "the grip that a steady drag takes from the side force, and what it does to stiffness and speed (gear.drag)",
+            "rolling with less drag than this one, and free of it (gear.drag)",
+        )
 
 
 Dragged = Annotated[Drag | None, Field(examples=[{"brake_torque": "1 kN m", "lateral_stiffness": "1 MN/m"}])]

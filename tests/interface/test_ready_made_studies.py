@@ -60,7 +60,7 @@ def test_friction_holds_kicks_up_to_a_border(study):
     assert abscissa == pytest.approx(8.66, abs=0.02)
     assert speed == pytest.approx(11.8, abs=0.2)
     kick, release = ({"kick": {"yaw_rate": 2.0}}, {"release": {"yaw_angle": np.radians(5.0)}})
-    for pressure, disturbance, speed, torque in ((20, kick, 13.8, 9.64), (31, release, 9.4, 20.6), (40, kick, 9.4, 4.23)):
+    for pressure, disturbance, speed, torque in ((20, kick, 13.8, 9.64), (31, release, 9.4, 20.6)):
         at = study.replace(tyre__pressure=f"{pressure} psi")
         asked = Disturbance.model_validate(disturbance)
         for part, rests in ((0.9, False), (1.02, True)):
@@ -72,9 +72,9 @@ def test_friction_holds_kicks_up_to_a_border(study):
 def test_least_breakout_against_a_search_of_its_own(study):
     """Where one speed alone is looked at, it lies within 3 % above the largest of a row that does not rest."""
     asked = Disturbance.model_validate({"kick": {"yaw_rate": 2.0}})
-    found = least_breakout(study.replace(damper__breakout_force="700 lbf"), asked, [20.0], 1.3e3, 1.0)
+    found = least_breakout(study.replace(damper__breakout_force="700 lbf"), asked, [20.0], 1.3e3, 0.5)
     row = np.array([0.96, 1.0]) * found.torque
-    rest = [comes_to_rest(with_breakout(study, torque), 20.0, 1.3e3, asked, 1.0) for torque in row]
+    rest = [comes_to_rest(with_breakout(study, torque), 20.0, 1.3e3, asked, 0.5) for torque in row]
     assert rest == [False, True]
     assert found.speed == 20.0
     slippery = study.replace(damper__breakout_force="0.1 lbf", tyre__friction=0.05)

@@ -12,7 +12,21 @@ from . import interrupts
 with interrupts.at_once():
     import typer
 
-    from .commands import analyse, chart, components, init, optimise, report, schema, simulate, sweep, thesis, tyre, validate
+    from .commands import (
+        analyse,
+        chart,
+        components,
+        init,
+        optimise,
+        report,
+        schema,
+        simulate,
+        sweep,
+        thesis,
+        tyre,
+        validate,
+        verify,
+    )
     from .commands.shared import err, out
     from .errors import DamperoptError, OutputError
 
@@ -26,7 +40,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (optimise, report, analyse, simulate, chart, sweep, tyre, thesis, components, validate, init, schema):
+for command in (optimise, verify, report, analyse, simulate, chart, sweep, tyre, thesis, components, validate, init, schema):
     app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 

@@ -10,6 +10,7 @@ from .studies import init, schema, validate
 from .sweep import sweep
 from .thesis import thesis
 from .tyre import tyre
+from .verify import verify
 
 __all__ = [
     "analyse",
@@ -24,4 +25,5 @@ __all__ = [
     "thesis",
     "tyre",
     "validate",
+    "verify",
 ]

@@ -13,18 +13,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
 
 from ..expressions.graph import walk
+from .affine import Affine, Bounded, Boxes, chord, either, expit, short, short_slope, softplus
+from .forms import METHODS, OF_FLOATS, Log, Piece, Truth
 
-__all__ = ["Affine", "Bounded", "Boxes", "relaxed"]
-
-NEAR = 1e-9
-"""Width of an interval below which its chord is its tangent."""
+__all__ = ["relaxed"]
 
 LOWEST = -690.0
 """Below the logarithm of any square."""
@@ -37,99 +36,7 @@ class _Unbounded(Exception):
     """An operation that has no bound here, or none on these boxes."""
 
 
-@dataclass(frozen=True)
-class Affine:
-    """value + slope . (x - reference), (m,) and (m, n)."""
-
-    value: np.ndarray
-    slope: np.ndarray
-
-    def __add__(self, other: Affine | Any) -> Affine:
-        if isinstance(other, Affine):
-            return Affine(self.value + other.value, self.slope + other.slope)
-        return Affine(self.value + other, self.slope)
-
-    def __mul__(self, factor: Any) -> Affine:
-        return Affine(self.value * factor, self.slope * np.reshape(factor, (-1, 1)))
-
-
-@dataclass(frozen=True)
-class Boxes:
-    """m boxes of n variables.
-
-    Attributes
-    ----------
-    low, high, reference : ndarray
-        (m, n) ends, and a point in each.
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    reference: np.ndarray
-
-    def least(self, of: Affine) -> np.ndarray:
-        """Least value on each box."""
-        corner = np.where(of.slope > 0, self.low, self.high) - self.reference
-        return of.value + (of.slope * corner).sum(axis=1)
-
-    def most(self, of: Affine) -> np.ndarray:
-        """Largest value on each box."""
-        return -self.least(of * -1.0)
-
-
-@dataclass(frozen=True)
-class Bounded:
-    """A quantity between two affine functions, in an interval, and at the reference point."""
-
-    below: Affine
-    above: Affine
-    low: np.ndarray
-    high: np.ndarray
-    at: np.ndarray
-
-
-@dataclass(frozen=True)
-class _Log:
-    """sign e^u with u = constant + sum of coefficient times atom.
-
-    On boxes `open` the sign is not known, and nothing that follows holds but for a square: `most` is what u is at most there.
-    """
-
-    sign: int
-    constant: Any
-    atoms: dict[int, tuple[Any, Bounded]]
-    open: Any = False
-    most: Any = None
-
-    def scaled(self, factor: Any, sign: int | None = None) -> _Log:
-        atoms = {key: (c * factor, atom) for key, (c, atom) in self.atoms.items()}
-        return _Log(self.sign if sign is None else sign, self.constant * factor, atoms, self.open)
-
-    def plus(self, other: _Log) -> _Log:
-        """Of a product."""
-        atoms = dict(self.atoms)
-        for key, (c, atom) in other.atoms.items():
-            atoms[key] = (atoms[key][0] + c if key in atoms else c, atom)
-        return _Log(self.sign * other.sign, self.constant + other.constant, atoms, self.open | other.open)
-
-
-Value: TypeAlias = float | Bounded | _Log
-
-
-@dataclass(frozen=True)
-class _Truth:
-    """Where a condition holds, and where it does not; neither: on a part of the box."""
-
-    yes: Any
-    no: Any
-
-
-@dataclass(frozen=True)
-class _Piece:
-    """A value where a condition holds, else 0."""
-
-    when: _Truth
-    value: Value
+Value: TypeAlias = float | Bounded | Log
 
 
 class _Relaxations:
@@ -158,9 +65,9 @@ class _Relaxations:
         try:
             if any(x is None for x in operands):
                 return None
-            if code in _OF_FLOATS and all(isinstance(x, float) for x in operands):
-                return float(_OF_FLOATS[code](*operands))
-            return getattr(self, _METHODS[code])(*operands) if code in _METHODS else None
+            if code in OF_FLOATS and all(isinstance(x, float) for x in operands):
+                return float(OF_FLOATS[code](*operands))
+            return getattr(self, METHODS[code])(*operands) if code in METHODS else None
         except _Unbounded:
             return None
 
@@ -189,14 +96,14 @@ class _Relaxations:
 
     # forms of one value
 
-    def _atom(self, bounded: Bounded, sign: int = 1) -> _Log:
-        return _Log(sign, 0.0, {id(bounded): (1.0, bounded)})
+    def _atom(self, bounded: Bounded, sign: int = 1) -> Log:
+        return Log(sign, 0.0, {id(bounded): (1.0, bounded)})
 
     def _made(self, below: Affine, above: Affine, at: Any, low: Any = -np.inf, high: Any = np.inf) -> Bounded:
         low, high = np.maximum(low, self._boxes.least(below)), np.minimum(high, self._boxes.most(above))
         return Bounded(below, above, np.minimum(low, high), np.maximum(low, high), at)
 
-    def _sum_of(self, u: _Log) -> Bounded:
+    def _sum_of(self, u: Log) -> Bounded:
         """u itself."""
         if len(u.atoms) == 1 and u.constant is not None:
             ((c, only),) = u.atoms.values()
@@ -208,7 +115,7 @@ class _Relaxations:
             low, high, at = low + np.minimum(*ends), high + np.maximum(*ends), at + c * atom.at
         return self._made(self._side(u, True), self._side(u, False), at, low, high)
 
-    def _side(self, u: _Log, below: bool) -> Affine:
+    def _side(self, u: Log, below: bool) -> Affine:
         total = self._zero + u.constant
         for c, atom in u.atoms.values():
             rising = (np.asarray(c) > 0) == below
@@ -223,14 +130,14 @@ class _Relaxations:
         low, high, at = (np.broadcast_to(x, self._zero.value.shape) for x in (low, high, at))
         return Bounded(self._zero + low, self._zero + high, low, high, at)
 
-    def _log(self, x: Any) -> _Log:
+    def _log(self, x: Any) -> Log:
         """In its logarithm."""
-        if isinstance(x, _Log):
+        if isinstance(x, Log):
             return x
         if isinstance(x, float):
             if x == 0 or not math.isfinite(x):
                 raise _Unbounded
-            return _Log(1 if x > 0 else -1, math.log(abs(x)), {})
+            return Log(1 if x > 0 else -1, math.log(abs(x)), {})
         if not isinstance(x, Bounded):
             raise _Unbounded
         if (x.low > 0).all():
@@ -243,7 +150,7 @@ class _Relaxations:
         """In itself."""
         if isinstance(x, float):
             return self._flat(x, x, x)
-        if isinstance(x, _Log):
+        if isinstance(x, Log):
             if np.any(x.open):
                 raise _Unbounded
             found = self._outer(self._sum_of(x), np.exp, np.exp, convex=True)
@@ -282,7 +189,7 @@ class _Relaxations:
     def negative(self, x: Any) -> Any:
         if isinstance(x, float):
             return -x
-        if isinstance(x, _Log):
+        if isinstance(x, Log):
             return replace(x, sign=-x.sign)
         return Bounded(x.above * -1.0, x.below * -1.0, -x.high, -x.low, -x.at)
 
@@ -309,9 +216,9 @@ class _Relaxations:
         return self._log(x).scaled(-1.0)
 
     def square(self, x: Any) -> Any:
-        if isinstance(x, _Log) and x.most is not None:
+        if isinstance(x, Log) and x.most is not None:
             flat = self._flat(LOWEST, 2 * x.most, LOWEST)
-            return self._atom(_either(x.open, flat, self._sum_of(x.scaled(2.0))))
+            return self._atom(either(x.open, flat, self._sum_of(x.scaled(2.0))))
         if isinstance(x, Bounded) and not ((x.low > 0).all() or (x.high < 0).all()):
             found = self._outer(x, np.square, lambda v: 2 * v, convex=True)
             return replace(found, low=np.maximum(found.low, 0.0))
@@ -330,7 +237,7 @@ class _Relaxations:
         return u.scaled(exponent)
 
     def plus(self, x: Any, y: Any) -> Any:
-        if isinstance(x, _Piece) and isinstance(y, _Piece):
+        if isinstance(x, Piece) and isinstance(y, Piece):
             return self._chosen(x, y)
         if isinstance(x, float) and x == 0:
             return y
@@ -346,16 +253,16 @@ class _Relaxations:
     def minus(self, x: Any, y: Any) -> Any:
         return self.plus(x, self.negative(y))
 
-    def _apart(self, u: _Log, v: _Log) -> Bounded:
+    def _apart(self, u: Log, v: Log) -> Bounded:
         """v - u."""
         found = self._sum_of(v.plus(u.scaled(-1.0)))
         return replace(found, at=np.clip(found.at, found.low, found.high))
 
-    def _mixed(self, u: _Log, v: _Log, weight: Any, constant: Any, below: bool) -> Affine:
+    def _mixed(self, u: Log, v: Log, weight: Any, constant: Any, below: bool) -> Affine:
         """u + weight (v - u) + constant, from below or above."""
         return self._side(u.scaled(1 - weight).plus(v.scaled(weight)), below) + constant
 
-    def _together(self, u: _Log, v: _Log) -> _Log:
+    def _together(self, u: Log, v: Log) -> Log:
         """u + ln(1 + e^(v - u))."""
         d = self._apart(u, v)
         w, s = expit(d.at), chord(softplus, expit, d.low, d.high)
@@ -366,7 +273,7 @@ class _Relaxations:
         made = self._made(below, above, p.at + softplus(d.at), *ends)
         return replace(self._atom(made, u.sign), open=u.open | v.open)
 
-    def _difference(self, u: _Log, v: _Log) -> _Log:
+    def _difference(self, u: Log, v: Log) -> Log:
         """u + ln(1 - e^(v - u)), of the larger one's sign."""
         d = self._apart(u, v)
         if (d.low > 0).sum() > (d.high < 0).sum():
@@ -399,7 +306,7 @@ class _Relaxations:
     def cosine(self, x: Any) -> Any:
         return self._of_angle(x, lambda v: np.log(np.cos(v)), lambda v: -np.tan(v), -math.pi / 2, math.pi / 2)
 
-    def _of_angle(self, x: Any, f: Any, slope: Any, least: float, most: float) -> _Log:
+    def _of_angle(self, x: Any, f: Any, slope: Any, least: float, most: float) -> Log:
         x = self._plain(x)
         if not ((x.low > least) & (x.high < most)).all():
             raise _Unbounded
@@ -415,19 +322,19 @@ class _Relaxations:
         above = self._mixed(u, v, s, np.maximum(d.low, 0) - s * d.low, False)
         return self._atom(self._made(below, above, self._sum_of(u).at + np.maximum(d.at, 0)))
 
-    def less(self, x: Any, y: Any) -> _Truth:
+    def less(self, x: Any, y: Any) -> Truth:
         p, q = self._plain(x), self._plain(y)
-        return _Truth(p.high < q.low, p.low >= q.high)
+        return Truth(p.high < q.low, p.low >= q.high)
 
-    def is_not(self, x: Any) -> _Truth:
-        return _Truth(not x, bool(x)) if isinstance(x, float) else _Truth(x.no, x.yes)
+    def is_not(self, x: Any) -> Truth:
+        return Truth(not x, bool(x)) if isinstance(x, float) else Truth(x.no, x.yes)
 
     def if_else_zero(self, when: Any, x: Any) -> Any:
         if isinstance(when, float):
             return x if when else 0.0
-        return _Piece(when, x)
+        return Piece(when, x)
 
-    def _chosen(self, x: _Piece, y: _Piece) -> _Log:
+    def _chosen(self, x: Piece, y: Piece) -> Log:
         """One of two, by a condition and its opposite."""
         u, v = self._log(x.value), self._log(y.value)
         if u.sign < 0 or v.sign < 0 or np.any(u.open | v.open):
@@ -435,86 +342,7 @@ class _Relaxations:
         p, q = self._sum_of(u), self._sum_of(v)
         low, high = np.minimum(p.low, q.low), np.maximum(p.high, q.high)
         flat = self._flat(low, high, np.minimum(p.at, q.at))
-        return self._atom(_either(x.when.yes, p, _either(y.when.yes, q, flat)))
-
-
-def _either(first: np.ndarray, one: Bounded, other: Bounded) -> Bounded:
-    """The one on some boxes, the other on the rest."""
-
-    def line(a: Affine, b: Affine) -> Affine:
-        return Affine(np.where(first, a.value, b.value), np.where(np.reshape(first, (-1, 1)), a.slope, b.slope))
-
-    rest = (np.where(first, getattr(one, name), getattr(other, name)) for name in ("low", "high", "at"))
-    return Bounded(line(one.below, other.below), line(one.above, other.above), *rest)
-
-
-def softplus(d: np.ndarray) -> np.ndarray:
-    """ln(1 + e^d)"""
-    return np.logaddexp(0.0, d)
-
-
-def expit(d: np.ndarray) -> np.ndarray:
-    """1/(1 + e^-d)"""
-    return np.exp(-np.logaddexp(0.0, -d))
-
-
-def short(d: np.ndarray) -> np.ndarray:
-    """ln(1 - e^d), d < 0."""
-    return np.log(-np.expm1(d))
-
-
-def short_slope(d: np.ndarray) -> np.ndarray:
-    """Its slope, -1/(e^-d - 1)."""
-    return -1 / np.expm1(-d)
-
-
-def chord(f: Callable[[Any], Any], slope: Callable[[Any], Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Slope of the chord of f; of its tangent where the interval has no width."""
-    wide = high - low > NEAR * (1 + np.abs(high))
-    return np.where(wide, (f(high) - f(low)) / np.where(wide, high - low, 1.0), slope(low))
-
-
-_METHODS = {
-    ca.OP_ASSIGN: "assign",
-    ca.OP_ADD: "plus",
-    ca.OP_SUB: "minus",
-    ca.OP_MUL: "times",
-    ca.OP_DIV: "over",
-    ca.OP_NEG: "negative",
-    ca.OP_INV: "inverse",
-    ca.OP_SQ: "square",
-    ca.OP_TWICE: "twice",
-    ca.OP_SQRT: "root",
-    ca.OP_POW: "power",
-    ca.OP_CONSTPOW: "power",
-    ca.OP_LOG: "logarithm",
-    ca.OP_EXP: "exponential",
-    ca.OP_FABS: "magnitude",
-    ca.OP_SIN: "sine",
-    ca.OP_COS: "cosine",
-    ca.OP_FMAX: "larger",
-    ca.OP_LT: "less",
-    ca.OP_LE: "less",
-    ca.OP_NOT: "is_not",
-    ca.OP_IF_ELSE_ZERO: "if_else_zero",
-}
-
-_OF_FLOATS: dict[int, Callable[..., float]] = {
-    ca.OP_ADD: lambda a, b: a + b,
-    ca.OP_SUB: lambda a, b: a - b,
-    ca.OP_MUL: lambda a, b: a * b,
-    ca.OP_DIV: lambda a, b: a / b,
-    ca.OP_NEG: lambda a: -a,
-    ca.OP_INV: lambda a: 1 / a,
-    ca.OP_SQ: lambda a: a * a,
-    ca.OP_SQRT: math.sqrt,
-    ca.OP_POW: pow,
-    ca.OP_CONSTPOW: pow,
-    ca.OP_LT: lambda a, b: a < b,
-    ca.OP_LE: lambda a, b: a <= b,
-    ca.OP_NOT: lambda a: not a,
-    ca.OP_IF_ELSE_ZERO: lambda a, b: b if a else 0.0,
-}
+        return self._atom(either(x.when.yes, p, either(y.when.yes, q, flat)))
 
 
 def relaxed(function: ca.Function, boxes: Boxes, logarithmic: Sequence[bool]) -> list[Bounded | None]:

@@ -14,16 +14,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..expressions.graph import walk
-from .intervals import Interval, exponential, logarithm, monotone, of
+from .forms import RULES, Atom, Piece, Power, Truth, joined, positive, product
+from .intervals import Interval, exponential, logarithm, of
+from .lines import Line, Places, added, chord, either, entropy, short, softplus
 
-__all__ = ["Line", "Places", "lines"]
+__all__ = ["lines"]
 
 LOWEST = -690.0
 """Below the logarithm of any square."""
@@ -34,83 +36,6 @@ EDGE = 1e-12
 
 class _Unknown(Exception):
     """No rule, or none on these boxes."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """constant + slope . (x - place), intervals (m,) and (m, n)."""
-
-    constant: Interval
-    slope: Interval
-
-    def plus(self, other: Line) -> Line:
-        return Line(self.constant + other.constant, self.slope + other.slope)
-
-    def times(self, factor: Any) -> Line:
-        factor = of(factor)
-        wide = Interval(factor.low[..., None], factor.high[..., None]) if factor.low.ndim else factor
-        return Line(self.constant * factor, self.slope * wide)
-
-    def raised(self, by: Any) -> Line:
-        return Line(self.constant + by, self.slope)
-
-    def reversed(self) -> Line:
-        return Line(-self.constant, -self.slope)
-
-
-class Places:
-    """m boxes of n variables, each with a place in it about which lines are written.
-
-    Parameters
-    ----------
-    low, high, place : ndarray
-        (m, n)
-    """
-
-    def __init__(self, low: np.ndarray, high: np.ndarray, place: np.ndarray):
-        self.place, self.shape = place, place.shape
-        self._moves = Interval(low, high) - place
-
-    def range(self, line: Line) -> Interval:
-        """Of a line's values on each box."""
-        return line.constant + (line.slope * self._moves).sum(axis=1)
-
-
-@dataclass(frozen=True)
-class _Atom:
-    below: Line
-    above: Line
-    range: Interval
-    at: np.ndarray
-    """About its value at the place: where tangents are taken, no more."""
-
-
-@dataclass(frozen=True)
-class _Truth:
-    """Where a condition holds, and where it does not; neither: on a part of the box."""
-
-    yes: Any
-    no: Any
-
-
-@dataclass(frozen=True)
-class _Piece:
-    when: _Truth
-    value: Any
-
-
-@dataclass(frozen=True)
-class _Power:
-    """sign times e^(constant + sum of coefficient times atom).
-
-    On boxes `open` the sign is not known, and nothing that follows holds but for a square: its logarithm is 2 `most` at most.
-    """
-
-    sign: int
-    constant: Interval
-    atoms: tuple[tuple[Any, _Atom], ...]
-    open: Any = False
-    most: Any = None
 
 
 class _Rules:
@@ -125,8 +50,8 @@ class _Rules:
             slope = np.zeros((m, n))
             slope[:, i] = 1.0
             own = Line(of(places.place[:, i]), of(slope))
-            atom = _Atom(own, own, places.range(own), places.place[:, i])
-            self._inputs.append(_Power(1, of(0.0), ((1.0, atom),)) if log else atom)
+            atom = Atom(own, own, places.range(own), places.place[:, i])
+            self._inputs.append(Power(1, of(0.0), ((1.0, atom),)) if log else atom)
 
     def constant(self, value: float) -> float:
         return value
@@ -135,7 +60,7 @@ class _Rules:
         return self._inputs[position]
 
     def operation(self, code: int, operands: Sequence[Any]) -> Any:
-        rule = _RULES.get(code)
+        rule = RULES.get(code)
         if rule is None or any(x is None for x in operands):
             return None
         try:
@@ -161,12 +86,12 @@ class _Rules:
 
     # forms
 
-    def _power(self, x: Any) -> _Power:
-        if isinstance(x, _Power):
+    def _power(self, x: Any) -> Power:
+        if isinstance(x, Power):
             return x
         if isinstance(x, float) and x != 0 and math.isfinite(x):
-            return _Power(1 if x > 0 else -1, logarithm(abs(x)), ())
-        if not isinstance(x, _Atom):
+            return Power(1 if x > 0 else -1, logarithm(abs(x)), ())
+        if not isinstance(x, Atom):
             raise _Unknown
         if (x.range.low > 0).all():
             return self._single(self._bent(x, False))
@@ -175,31 +100,31 @@ class _Rules:
             return replace(mirrored, sign=-1)
         raise _Unknown
 
-    def _plain(self, x: Any) -> _Atom:
-        if isinstance(x, _Atom):
+    def _plain(self, x: Any) -> Atom:
+        if isinstance(x, Atom):
             return x
         if isinstance(x, float):
             line = self._nothing.raised(x)
             constant = np.full(self._places.shape[0], x)
-            return _Atom(line, line, of(constant), constant)
-        if not isinstance(x, _Power) or np.any(x.open):
+            return Atom(line, line, of(constant), constant)
+        if not isinstance(x, Power) or np.any(x.open):
             raise _Unknown
         found = self._bent(self._value(x), True)
         return found if x.sign > 0 else self.negative(found)
 
-    def _single(self, atom: _Atom, sign: int = 1) -> _Power:
-        return _Power(sign, of(0.0), ((1.0, atom),))
+    def _single(self, atom: Atom, sign: int = 1) -> Power:
+        return Power(sign, of(0.0), ((1.0, atom),))
 
-    def _value(self, u: _Power) -> _Atom:
+    def _value(self, u: Power) -> Atom:
         """The exponent itself."""
         below, above = self._line(u, True), self._line(u, False)
         low, high = self._places.range(below).low, self._places.range(above).high
         plain = u.constant + np.zeros(self._places.shape[0])
         for c, atom in u.atoms:
             plain = plain + atom.range * c
-        return _Atom(below, above, Interval(np.maximum(low, plain.low), np.minimum(high, plain.high)), self._at(u))
+        return Atom(below, above, Interval(np.maximum(low, plain.low), np.minimum(high, plain.high)), self._at(u))
 
-    def _line(self, u: _Power, below: bool) -> Line:
+    def _line(self, u: Power, below: bool) -> Line:
         total = self._nothing.raised(u.constant)
         for c, atom in u.atoms:
             rising, falling = of(c).low >= 0, of(c).high <= 0
@@ -207,11 +132,11 @@ class _Rules:
             if rising.all() or falling.all():
                 total = total.plus((first if rising.all() else second).times(c))
                 continue
-            moved = _either(rising, first, second).times(c)
-            total = total.plus(_either(rising | falling, moved, self._nothing.raised(atom.range * c)))
+            moved = either(rising, first, second).times(c)
+            total = total.plus(either(rising | falling, moved, self._nothing.raised(atom.range * c)))
         return total
 
-    def _bent(self, x: _Atom, convex: bool) -> _Atom:
+    def _bent(self, x: Atom, convex: bool) -> Atom:
         """e^x, or else ln x: a tangent with any slope to one side, to the other the line with the slope of the chord."""
         f, at = exponential if convex else logarithm, np.clip(x.at, x.range.low, x.range.high)
         with np.errstate(all="ignore"):
@@ -227,11 +152,11 @@ class _Rules:
         gaps = [end - of(chord) * place for end, place in zip(ends, (x.range.low, x.range.high), strict=True)]
         if convex:
             secant = self._along(x, chord, of(np.maximum(gaps[0].high, gaps[1].high)), False)
-            return _Atom(tangent, secant, Interval(ends[0].low, ends[1].high), value)
+            return Atom(tangent, secant, Interval(ends[0].low, ends[1].high), value)
         secant = self._along(x, chord, of(np.minimum(gaps[0].low, gaps[1].low)), True)
-        return _Atom(secant, tangent, Interval(ends[0].low, ends[1].high), value)
+        return Atom(secant, tangent, Interval(ends[0].low, ends[1].high), value)
 
-    def _along(self, x: _Atom, slope: np.ndarray, constant: Interval, below: bool) -> Line:
+    def _along(self, x: Atom, slope: np.ndarray, constant: Interval, below: bool) -> Line:
         """slope x + constant from below or above; slopes are not negative here."""
         return (x.below if below else x.above).times(np.maximum(slope, 0.0)).raised(constant)
 
@@ -243,19 +168,19 @@ class _Rules:
     def negative(self, x: Any) -> Any:
         if isinstance(x, float):
             return -x
-        if isinstance(x, _Power):
+        if isinstance(x, Power):
             return replace(x, sign=-x.sign)
-        return _Atom(x.above.reversed(), x.below.reversed(), -x.range, -x.at)
+        return Atom(x.above.reversed(), x.below.reversed(), -x.range, -x.at)
 
     def times(self, x: Any, y: Any) -> Any:
         if any(isinstance(factor, float) and factor == 0 for factor in (x, y)):
             return 0.0
         for a, b in ((x, y), (y, x)):
-            if isinstance(a, float) and isinstance(b, _Atom):
+            if isinstance(a, float) and isinstance(b, Atom):
                 ends = b.below.times(a), b.above.times(a)
-                return _Atom(*(ends if a > 0 else ends[::-1]), b.range * a, b.at * a)
+                return Atom(*(ends if a > 0 else ends[::-1]), b.range * a, b.at * a)
         u, v = self._power(x), self._power(y)
-        return _Power(u.sign * v.sign, u.constant + v.constant, _joined(u.atoms, v.atoms), u.open | v.open)
+        return Power(u.sign * v.sign, u.constant + v.constant, joined(u.atoms, v.atoms), u.open | v.open)
 
     def over(self, x: Any, y: Any) -> Any:
         return self.times(x, self.inverse(y))
@@ -264,27 +189,27 @@ class _Rules:
         return self._raised(self._power(x), -1.0)
 
     def square(self, x: Any) -> Any:
-        if isinstance(x, _Power) and x.most is not None:
+        if isinstance(x, Power) and x.most is not None:
             whole = self._value(self._raised(x, 2.0))
             least, most = self._nothing.raised(LOWEST), self._nothing.raised(of(x.most) * 2.0)
-            below, above = _either(x.open, least, whole.below), _either(x.open, most, whole.above)
+            below, above = either(x.open, least, whole.below), either(x.open, most, whole.above)
             ranged = Interval(np.where(x.open, LOWEST, whole.range.low), np.where(x.open, most.constant.high, whole.range.high))
-            return self._single(_Atom(below, above, ranged, np.where(x.open, LOWEST, whole.at)))
-        if isinstance(x, _Atom) and not ((x.range.low > 0).all() or (x.range.high < 0).all()):
+            return self._single(Atom(below, above, ranged, np.where(x.open, LOWEST, whole.at)))
+        if isinstance(x, Atom) and not ((x.range.low > 0).all() or (x.range.high < 0).all()):
             return self._square(x)
-        return _positive(self._raised(self._power(x), 2.0))
+        return positive(self._raised(self._power(x), 2.0))
 
-    def _square(self, x: _Atom) -> _Atom:
+    def _square(self, x: Atom) -> Atom:
         """Of either sign: x^2 >= 2 p x - p^2, and below the chord on [a, b], (a + b) x - a b."""
         p = x.range.middle
-        below = _either(p >= 0, x.below, x.above).times(2 * p).raised(-(of(p) * p))
+        below = either(p >= 0, x.below, x.above).times(2 * p).raised(-(of(p) * p))
         total = of(x.range.low) + x.range.high
         sign = total.low >= 0
         exact = sign | (total.high <= 0)
-        chord = _either(sign, x.above, x.below).times(total).raised(-(of(x.range.low) * x.range.high))
+        chord = either(sign, x.above, x.below).times(total).raised(-(of(x.range.low) * x.range.high))
         most = np.maximum((of(x.range.low) * x.range.low).high, (of(x.range.high) * x.range.high).high)
-        above = _either(exact, chord, self._nothing.raised(most))
-        return _Atom(below, above, Interval(np.maximum(self._places.range(below).low, 0.0), most), x.at**2)
+        above = either(exact, chord, self._nothing.raised(most))
+        return Atom(below, above, Interval(np.maximum(self._places.range(below).low, 0.0), most), x.at**2)
 
     def twice(self, x: Any) -> Any:
         return self.times(2.0, x)
@@ -298,12 +223,12 @@ class _Rules:
             raise _Unknown
         return self._raised(u, exponent)
 
-    def _raised(self, u: _Power, exponent: float) -> _Power:
-        atoms = tuple((_product(c, exponent), atom) for c, atom in u.atoms)
-        return _Power(u.sign, u.constant * exponent, atoms, u.open)
+    def _raised(self, u: Power, exponent: float) -> Power:
+        atoms = tuple((product(c, exponent), atom) for c, atom in u.atoms)
+        return Power(u.sign, u.constant * exponent, atoms, u.open)
 
     def plus(self, x: Any, y: Any) -> Any:
-        if isinstance(x, _Piece) and isinstance(y, _Piece):
+        if isinstance(x, Piece) and isinstance(y, Piece):
             return self._chosen(x, y)
         for a, b in ((x, y), (y, x)):
             if isinstance(a, float) and a == 0:
@@ -311,45 +236,46 @@ class _Rules:
         try:
             u, v = self._power(x), self._power(y)
             if u.sign == v.sign:
-                return _Power(u.sign, of(0.0), ((1.0, self._together(u, v)),), u.open | v.open)
+                return Power(u.sign, of(0.0), ((1.0, self._together(u, v)),), u.open | v.open)
             return self._apart(u, v)
         except _Unknown:
             p, q = self._plain(x), self._plain(y)
-            return _Atom(p.below.plus(q.below), p.above.plus(q.above), p.range + q.range, p.at + q.at)
+            return Atom(p.below.plus(q.below), p.above.plus(q.above), p.range + q.range, p.at + q.at)
 
     def minus(self, x: Any, y: Any) -> Any:
         return self.plus(x, self.negative(y))
 
-    def _mixed(self, u: _Power, v: _Power, w: np.ndarray, constant: Interval, below: bool) -> Line:
+    def _mixed(self, u: Power, v: Power, w: np.ndarray, constant: Interval, below: bool) -> Line:
         """(1 - w) u + w v + constant."""
         first, second = self._weighted(u, 1.0 - of(w)), self._weighted(v, of(w))
-        both = _Power(1, first.constant + second.constant, _joined(first.atoms, second.atoms))
+        both = Power(1, first.constant + second.constant, joined(first.atoms, second.atoms))
         return self._line(both, below).raised(constant)
 
-    def _weighted(self, u: _Power, w: Interval) -> _Power:
-        return _Power(1, u.constant * w, tuple((w * c, atom) for c, atom in u.atoms))
+    def _weighted(self, u: Power, w: Interval) -> Power:
+        return Power(1, u.constant * w, tuple((w * c, atom) for c, atom in u.atoms))
 
-    def _distance(self, u: _Power, v: _Power) -> Interval:
+    def _distance(self, u: Power, v: Power) -> Interval:
         """Of v - u."""
-        less = self._raised(_positive(u), -1.0)
-        return self._value(_Power(1, v.constant + less.constant, _joined(v.atoms, less.atoms))).range
+        less = self._raised(positive(u), -1.0)
+        return self._value(Power(1, v.constant + less.constant, joined(v.atoms, less.atoms))).range
 
-    def _together(self, u: _Power, v: _Power) -> _Atom:
+    def _together(self, u: Power, v: Power) -> Atom:
         """ln(e^u + e^v)."""
         d = self._distance(u, v)
         at = np.clip(self._at(v) - self._at(u), d.low, d.high)
         w = np.clip(1 / (1 + np.exp(-np.clip(at, -600, 600))), EDGE, 1 - EDGE)
-        below = self._mixed(u, v, w, _entropy(w), True)
-        f = _softplus(Interval(d.low, d.low)), _softplus(Interval(d.high, d.high))
-        s = _chord(f, d, w)
+        below = self._mixed(u, v, w, entropy(w), True)
+        f = softplus(Interval(d.low, d.low)), softplus(Interval(d.high, d.high))
+        s = chord(f, d, w)
         gap = np.maximum((f[0] - of(s) * d.low).high, (f[1] - of(s) * d.high).high)
         above = self._mixed(u, v, s, of(gap), False)
         p, q = self._value(u).range, self._value(v).range
-        low = np.maximum(self._places.range(below).low, np.maximum(p.low, q.low))
+        plain = Interval(added(p.low, q.low).low, added(p.high, q.high).high)
+        ends = self._places.range(below).low, self._places.range(above).high
         reached = np.logaddexp(self._at(u), self._at(v))
-        return _Atom(below, above, Interval(low, self._places.range(above).high), reached)
+        return Atom(below, above, Interval(np.maximum(ends[0], plain.low), np.minimum(ends[1], plain.high)), reached)
 
-    def _apart(self, u: _Power, v: _Power) -> _Power:
+    def _apart(self, u: Power, v: Power) -> Power:
         """ln(e^u - e^v), of the sign of the larger."""
         d = self._distance(u, v)
         if (d.low > 0).sum() > (d.high < 0).sum():
@@ -362,25 +288,25 @@ class _Rules:
         # of the slope -w, phi(d) + w d has its most at e^d = w/(1 + w): -(1 + w) ln(1 + w) + w ln w
         top = of(w) * logarithm(w) - (1.0 + of(w)) * logarithm(1.0 + of(w))
         above = self._mixed(u, v, -w, top, False)
-        f = _short(Interval(d.low, d.low)), _short(Interval(d.high, d.high))
-        s = -_chord(f, d, -w)
+        f = short(Interval(d.low, d.low)), short(Interval(d.high, d.high))
+        s = -chord(f, d, -w)
         gap = np.minimum((f[0] + of(s) * d.low).low, (f[1] + of(s) * d.high).low)
         below = self._mixed(u, v, -s, of(gap), True)
         reached = self._at(u) + np.log(-np.expm1(at))
-        ranged = _Atom(below, above, Interval(self._places.range(below).low, self._places.range(above).high), reached)
-        found = _Power(u.sign, of(0.0), ((1.0, ranged),), ~told | u.open | v.open)
+        ranged = Atom(below, above, Interval(self._places.range(below).low, self._places.range(above).high), reached)
+        found = Power(u.sign, of(0.0), ((1.0, ranged),), ~told | u.open | v.open)
         if told.all():
             return found
         return replace(found, most=np.maximum(self._value(u).range.high, self._value(v).range.high))
 
-    def _at(self, u: _Power) -> np.ndarray:
+    def _at(self, u: Power) -> np.ndarray:
         total = np.zeros(self._places.shape[0]) + u.constant.middle
         for c, atom in u.atoms:
             total = total + of(c).middle * atom.at
         return total
 
     def magnitude(self, x: Any) -> Any:
-        return replace(_positive(self._power(x)), most=None)
+        return replace(positive(self._power(x)), most=None)
 
     def logarithm(self, x: Any) -> Any:
         u = self._power(x)
@@ -397,111 +323,36 @@ class _Rules:
         if u.sign < 0 or v.sign < 0 or np.any(u.open | v.open):
             raise _Unknown
         first = self._at(u) >= self._at(v)
-        below = _either(first, self._line(u, True), self._line(v, True))
+        below = either(first, self._line(u, True), self._line(v, True))
         p, q = self._value(u), self._value(v)
         together = self._together(u, v)
         ranged = Interval(np.maximum(p.range.low, q.range.low), np.maximum(p.range.high, q.range.high))
-        return self._single(_Atom(below, together.above, ranged, np.maximum(p.at, q.at)))
+        return self._single(Atom(below, together.above, ranged, np.maximum(p.at, q.at)))
 
     def less(self, x: Any, y: Any) -> Any:
         p, q = self._plain(x).range, self._plain(y).range
-        return _Truth(p.high < q.low, p.low >= q.high)
+        return Truth(p.high < q.low, p.low >= q.high)
 
     def is_not(self, x: Any) -> Any:
-        if not isinstance(x, _Truth):
+        if not isinstance(x, Truth):
             raise _Unknown
-        return _Truth(x.no, x.yes)
+        return Truth(x.no, x.yes)
 
     def if_else_zero(self, when: Any, x: Any) -> Any:
-        if not isinstance(when, _Truth):
+        if not isinstance(when, Truth):
             raise _Unknown
-        return _Piece(when, x)
+        return Piece(when, x)
 
-    def _chosen(self, x: _Piece, y: _Piece) -> Any:
+    def _chosen(self, x: Piece, y: Piece) -> Any:
         """One of two positive numbers, by a condition and its opposite."""
         u, v = self._power(x.value), self._power(y.value)
         if u.sign < 0 or v.sign < 0 or x.when.yes is not y.when.no or np.any(u.open | v.open):
             raise _Unknown
         p, q, yes, no = self._value(u), self._value(v), x.when.yes, y.when.yes
         low, high = np.minimum(p.range.low, q.range.low), np.maximum(p.range.high, q.range.high)
-        below = _either(yes, p.below, _either(no, q.below, self._nothing.raised(low)))
-        above = _either(yes, p.above, _either(no, q.above, self._nothing.raised(high)))
-        return self._single(_Atom(below, above, Interval(low, high), np.where(yes, p.at, q.at)))
-
-
-def _entropy(w: np.ndarray) -> Interval:
-    other = 1.0 - of(w)
-    return -(of(w) * logarithm(w)) - other * logarithm(other)
-
-
-def _softplus(d: Interval) -> Interval:
-    return monotone(lambda x: np.logaddexp(0.0, x), d)
-
-
-def _short(d: Interval) -> Interval:
-    """ln(1 - e^d); the rounding of what the logarithm is taken of counts."""
-    inside = monotone(lambda x: -np.expm1(x), d, rising=False)
-    return logarithm(Interval(np.maximum(inside.low, 1e-300), np.maximum(inside.high, 1e-300)))
-
-
-def _chord(f: tuple[Interval, Interval], d: Interval, otherwise: np.ndarray) -> np.ndarray:
-    width = d.high - d.low
-    wide = width > 1e-9 * (1 + np.abs(d.high))
-    with np.errstate(all="ignore"):
-        return np.where(wide, (f[1].middle - f[0].middle) / np.where(wide, width, 1.0), otherwise)
-
-
-def _either(first: np.ndarray, one: Line, other: Line) -> Line:
-    def chosen(a: Interval, b: Interval) -> Interval:
-        mask = np.reshape(first, (-1,) + (1,) * (max(a.low.ndim, b.low.ndim) - 1))
-        return Interval(np.where(mask, a.low, b.low), np.where(mask, a.high, b.high))
-
-    return Line(chosen(one.constant, other.constant), chosen(one.slope, other.slope))
-
-
-def _product(c: Any, factor: float) -> Any:
-    return c * factor if isinstance(c, Interval) else of(c) * factor
-
-
-def _joined(first: tuple[tuple[Any, _Atom], ...], second: tuple[tuple[Any, _Atom], ...]) -> tuple[tuple[Any, _Atom], ...]:
-    """Coefficients of one atom added, so that what cancels does."""
-    found = list(first)
-    for c, atom in second:
-        for i, (own, known) in enumerate(found):
-            if known is atom:
-                found[i] = (of(own) + c, atom)
-                break
-        else:
-            found.append((c, atom))
-    return tuple(found)
-
-
-def _positive(u: _Power) -> _Power:
-    return replace(u, sign=1)
-
-
-_RULES = {
-    ca.OP_ASSIGN: "same",
-    ca.OP_ADD: "plus",
-    ca.OP_SUB: "minus",
-    ca.OP_MUL: "times",
-    ca.OP_DIV: "over",
-    ca.OP_NEG: "negative",
-    ca.OP_INV: "inverse",
-    ca.OP_SQ: "square",
-    ca.OP_TWICE: "twice",
-    ca.OP_SQRT: "root",
-    ca.OP_POW: "power",
-    ca.OP_CONSTPOW: "power",
-    ca.OP_LOG: "logarithm",
-    ca.OP_EXP: "exponential",
-    ca.OP_FABS: "magnitude",
-    ca.OP_FMAX: "larger",
-    ca.OP_LT: "less",
-    ca.OP_LE: "less",
-    ca.OP_NOT: "is_not",
-    ca.OP_IF_ELSE_ZERO: "if_else_zero",
-}
+        below = either(yes, p.below, either(no, q.below, self._nothing.raised(low)))
+        above = either(yes, p.above, either(no, q.above, self._nothing.raised(high)))
+        return self._single(Atom(below, above, Interval(low, high), np.where(yes, p.at, q.at)))
 
 
 def lines(function: ca.Function, places: Places, logarithmic: Sequence[bool]) -> tuple[list[Line | None], list[Line | None]]:

@@ -18,10 +18,11 @@ import flint
 import numpy as np
 
 from ..study.study import Study
-from .enclosures import Line, Places, lines
+from .enclosures import lines
 from .intervals import Interval, exponential, of
 from .let_go import peak_at_least
 from .lightness import Lightness
+from .lines import Line, Places
 from .yaw import Contour, YawGear
 
 __all__ = ["BoundCheck", "check_bound"]

@@ -39,13 +39,7 @@ from .optimum.stock import StockSearch, of_chosen_sizes, of_stock
 from .proof.certify import certify
 from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
-from .results import (
-    Certificate,
-    DecayCheck,
-    DesignResult,
-    MassResult,
-    Verification,
-)
+from .results import Certificate, DecayCheck, DesignResult, MassResult, Verification
 from .stability.fail_safe import passive_rest
 from .study.components import optimisable
 from .study.study import Study
@@ -257,10 +251,7 @@ def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
 
 
 def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
-    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it.
-
-    With an actuator, so do the points that the proof without it finds.
-    """
+    """The optimum with its certificate; solved again with points that the proof, or that without an actuator, finds missed."""
     study, model = solver.problem.study, solver.problem.model
     rest = passive_rest(study)
     certificate = certify(study, best.solution.design, model=model)

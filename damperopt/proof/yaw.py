@@ -68,10 +68,12 @@ class YawGear:
     Raises
     ------
     CertificateError
-        If stiffness and damping do not enter the linear model as k + s c in one place.
+        If stiffness and damping do not enter the linear model as k + s c in one place, or an actuator acts beside them.
     """
 
     def __init__(self, study: Study):
+        if study.damper.actuator is not None:
+            raise CertificateError("an actuator acts beside the damper: what shimmies without it need not with it")
         self._studies = [
             study.replace(damper={"topology": "rotational", "torsional_stiffness": k, "torsional_damping": c})
             for k, c in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))

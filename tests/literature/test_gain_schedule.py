@@ -13,7 +13,8 @@ from scipy.linalg import solve_continuous_are, solve_continuous_lyapunov
 from scipy.optimize import minimize
 from table_gear import CARCASS, eigenvalues, table_gear
 
-from damperopt import ConfigError, certify, loads, optimise, simulate, simulate_exactly
+from damperopt import CertificateError, ConfigError, certify, loads, optimise, simulate, simulate_exactly
+from damperopt.proof.yaw import YawGear
 from damperopt.stability.fail_safe import passive_rest
 from damperopt.stability.gain_schedule import gain_schedule
 from damperopt.stability.linear import linear_gear
@@ -247,6 +248,12 @@ def test_fail_safe_decides_what_control_leaves(nose):
     more = optimise(nose.replace(requirements__stability_margin=1.0 + h)).mass.total
     price = -by_name["fail_safe_margin"].shadow_price  # kg per 1/s of margin: the limit is minus the margin
     assert abs(price) == pytest.approx((more - alone.mass.total) / h, rel=0.02)
+
+
+def test_no_bound_of_a_gear_without_its_actuator(nose):
+    """A bound on the mass that knows the passive gear alone would be wrong with an actuator: there is none."""
+    with pytest.raises(CertificateError, match="an actuator acts beside the damper"):
+        YawGear(controlled(nose))
 
 
 def test_both_margins_where_control_does_harm(nose):

@@ -22,7 +22,7 @@ envelope: {speed: {min: 10 m/s, max: 60 m/s}, vertical_load: 150 kN}
 requirements: {stability_margin: 2 1/s, limit_torque: 30 kN m,
                lug_distance: {min: 0.4 m, max: 1.1 m}, reach: {min: 0.1 m, max: 0.4 m}}
 design: {c_lambda: 12 kN s/m, k_lambda: 5 MN/m, L: 0.6 m, gamma: 0.5 rad}
-solver: {starts: 1, verification_speeds: 50}
+solver: {starts: 1, verification_speeds: 50, bound_seconds: 0}
 """
 
 

@@ -226,7 +226,7 @@ def nose():
         "lug_distance": {"min": 0.4, "max": 1.1},
         "reach": {"min": 0.1, "max": 0.4},
     }
-    base["solver"] = {"starts": 1, "verification_speeds": 50}
+    base["solver"] = {"starts": 1, "verification_speeds": 50, "bound_seconds": 0}
     return type(table_gear()).model_validate(base)
 
 

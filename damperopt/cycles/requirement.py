@@ -12,7 +12,7 @@ from .branches import Question
 from .motions import from_motions
 from .orbit import Branch
 
-__all__ = ["check_limit_cycles", "cycle_failure", "with_gap"]
+__all__ = ["check_limit_cycles", "cycle_failures", "with_gap"]
 
 
 def with_gap(study: Study) -> Study:
@@ -56,15 +56,17 @@ def _sizes(branches: list[Branch], speeds: list[float] | None) -> list[tuple[flo
     return list(zip(largest_stable(branches, speeds).tolist(), speeds, strict=True))
 
 
-def cycle_failure(check: LimitCycleCheck) -> str:
+def cycle_failures(check: LimitCycleCheck | None) -> list[str]:
     """Why a check is not passed, in words; with the play that would do, to which small cycles are in proportion."""
+    if check is None or check.passed:
+        return []
     if check.yaw_angle <= check.limit:
-        return f"limit cycles are undecided: {check.lost} of {check.branches} branches were lost"
+        return [f"limit cycles are undecided: {check.lost} of {check.branches} branches were lost"]
     words = (
         f"a stable limit cycle of {math.degrees(check.yaw_angle):.4g} deg at {check.speed:.6g} m/s, {check.load / 1e3:.6g} kN; "
         f"allowed {math.degrees(check.limit):.4g} deg"
     )
     if not check.gap:
-        return words
+        return [words]
     least = 1e3 * check.gap * check.limit / check.yaw_angle
-    return f"{words} (with {1e3 * check.gap:.4g} mm of play; about {least:.3g} mm would do)"
+    return [f"{words} (with {1e3 * check.gap:.4g} mm of play; about {least:.3g} mm would do)"]

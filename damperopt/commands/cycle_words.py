@@ -90,6 +90,13 @@ def show_cycles(
             console.print(f"  {escape(line)}", soft_wrap=True)
         if branch.error > EXACT:
             console.print(f"  accurate to {branch.error:.1g} of amplitude and period (intervals halved)", soft_wrap=True)
+        near = [o for o in branch.orbits if not o.label and abs(np.abs(o.multipliers).max() - 1) < branch.multiplier_error]
+        if branch.multiplier_error > EXACT and near:
+            console.print(
+                f"  [yellow]multipliers are accurate to {branch.multiplier_error:.1g}[/]: {len(near)} orbits are too near to "
+                "neutral for their stability to be known",
+                soft_wrap=True,
+            )
         if branch.kind == "hopf":
             _hidden(console, branch)
     _show_left(console, left)

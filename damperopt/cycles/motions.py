@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import ConfigError
 from ..motion.exact import ExactSimulator
 from ..study.study import Study
-from .branches import Question, end_in_words, error_of, worded
+from .branches import Question, end_in_words, errors_of, worded
 from .collocation import STAGES, Leg, Path, tableau
 from .continuation import Along, follow, scales_of
 from .edge import Kicker, edge
@@ -301,9 +301,9 @@ def _through(seeder: Seeder, found: Found, words: str, report: Callable[[Orbit],
     sides = [_onward(seeder, found, sign, report) for sign in (-1.0, 1.0)]
     orbits = [*reversed(sides[0][0]), found.orbit, *sides[1][0]]
     ends = [end_in_words(part or [found.orbit], end, axis.unit) for part, end in sides]
-    error = error_of(found.along, [found.orbit])
+    errors = errors_of(found.along, [found.orbit])
     return Branch(
-        axis.name, axis.unit, tuple(orbits), f"{words}; backwards: {ends[0]}", f"onwards: {ends[1]}", "simulation", error
+        axis.name, axis.unit, tuple(orbits), f"{words}; backwards: {ends[0]}", f"onwards: {ends[1]}", "simulation", *errors
     )
 
 

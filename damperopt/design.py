@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from .cycles.requirement import check_limit_cycles, cycle_failure
+from .cycles.requirement import check_limit_cycles, cycle_failures
 from .errors import ConfigError, Unfinished
 from .lightest import mass_bound
 from .motion.exact import ExactSimulator
@@ -339,9 +339,7 @@ def _checked(
             failures.append(
                 f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN{_times(factor)}"
             )
-    cycles = check_limit_cycles(study, solution.design)
-    if cycles is not None and not cycles.passed:
-        failures.append(cycle_failure(cycles))
+    failures += cycle_failures(cycles := check_limit_cycles(study, solution.design))
     simulated = {} if decay is None else decay.peaks
     rows = margin_rows(study, solution.design, simulated)
     failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]

@@ -86,7 +86,8 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         largest = " ".join(number_and_unit(cycle.yaw_angle, "rad")) if cycle.yaw_angle else "none"
         console.print(
             f"Limit cycles: {verdict}: largest stable one {largest} at {cycle.speed:.2f} m/s, {cycle.load / 1e3:g} kN, with "
-            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost; required "
+            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost, "
+            f"{cycle.left} motions left the model; required "
             f"{' '.join(number_and_unit(cycle.limit, 'rad'))}; a search, no proof",
             soft_wrap=True,
         )

@@ -199,6 +199,7 @@ def test_cycle_of_a_gap_returns_and_its_multiplier_is_that_of_a_map_through_the_
     assert np.abs(gap_cycle.multipliers).max() == pytest.approx(multiplier(turn, x, size), abs=DIFFERENCED)
 
 
+@pytest.mark.verify
 def test_cycle_between_the_stops_of_a_gear_with_a_gap_returns(request):
     """Half a cycle has four legs, those through the gap a hundredth of it long."""
     stop, stiffness, damping = 2e-3, 5e7, 3e3

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import model_validator
+from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from ..expressions.calculus import Expr, is_symbol, slope
 from ..expressions.corners import Corners
@@ -159,6 +160,17 @@ class ContactLine(Record):
     """Whether it needs `relaxation_length`; a line that has another number for it says no."""
 
     contact: str
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """In a file the tag of a block may stand under ``kind``."""
+        found = handler(schema)
+        block = handler.resolve_ref_schema(found)
+        if "contact" in block.get("properties", {}):
+            block["properties"]["kind"] = dict(block["properties"]["contact"])
+            block["required"] = [key for key in block.get("required", ()) if key != "contact"]
+            block["oneOf"] = [{"required": ["contact"]}, {"required": ["kind"]}]
+        return found
 
     def states(self) -> tuple[State, ...]:
         """States of the line, of one wheel; a line whose numbers say how many it has says it here."""

@@ -32,6 +32,7 @@ format: $(VENV)/installed-dev
 
 benchmark: $(VENV)/installed
 	$(BIN)/python benchmarks/optimise.py
+	$(BIN)/python benchmarks/main_job.py
 	$(BIN)/python benchmarks/transients.py
 	$(BIN)/python benchmarks/charts.py
 	$(BIN)/python benchmarks/memory.py

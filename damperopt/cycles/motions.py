@@ -53,6 +53,9 @@ LITTLE = 0.05
 REBUILT = (1e-4, 1e-3, 5e-3)
 """Steps, in parts of the range, over the place where corners are met in another order."""
 
+FINE, FINE_CYCLES = 6000, 2.6
+"""Points at which a motion is cut at its corners, and the cycles that they cover."""
+
 MOST_REBUILT = 40
 
 
@@ -128,10 +131,21 @@ class Seeder:
         parameters = self.question.parameters(self.flow, value)
         sizes = np.abs(states).max(axis=0)
         if self.jointed is not None:
+            time, states = self._finer(value, time, states)
             chain = chain_of(self.jointed, time, states, parameters, self.half)
             return None if chain is None else self.of_chain(chain, sizes, value)
         path = self._loop(time, states, parameters)
         return None if path is None else self._held(self._along(sizes), path, value)
+
+    def _finer(self, value: float, time: np.ndarray, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A motion carried on over some cycles at points so close that no two corners lie between neighbours."""
+        period = period_of(self.flow, states)
+        if period is None:
+            return time, states
+        kicker, speed, load = self.kicker(value)
+        fine = np.linspace(0, FINE_CYCLES * time[period], FINE)
+        rows = kicker.simulator.stretch(speed, load, kicker.disturbance(RELEASES[0][1]), fine, states[-1])
+        return (fine, rows[:, : self.flow.n]) if len(rows) == FINE else (time, states)
 
     def of_chain(self, chain: Chain, sizes: np.ndarray, value: float) -> Found | None:
         """The orbit near a chain of legs."""

@@ -206,7 +206,9 @@ class ContactLine(Record):
         return self
 
     def side_stiffness(self, linear: Linear) -> Expr:
-        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma)."""
+        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma); None: unknown."""
+        if linear.relaxation_length is None:
+            return None
         return linear.cornering_stiffness / (linear.half_contact_length + linear.relaxation_length)
 
     def least_wave(self) -> float:
@@ -348,5 +350,6 @@ class Tyre(Record):
         M_z = law.moment(alpha_M, wheel.load, p, corners)
         M_kappa = self.tread_width_moment * wheel.swivel_rate / wheel.speed
         outputs = {"slip_angle": alpha_F, "side_force": F_y, "aligning_moment": M_z}
-        deflection = F_y / self.contact.side_stiffness(linear)
+        K_y = self.contact.side_stiffness(linear)
+        deflection = None if K_y is None else F_y / K_y
         return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, deflection=deflection, wheel=wheel)

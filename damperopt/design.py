@@ -12,6 +12,7 @@ from pathlib import Path
 
 from .cycles.requirement import check_limit_cycles, cycle_failure
 from .errors import ConfigError, Unfinished
+from .lightest import mass_bound
 from .motion.exact import ExactSimulator
 from .optimum.answer import (
     SAME_MASS,
@@ -115,6 +116,7 @@ def optimise(
     result, stopped = _answer(solver, outcomes), False
     if search is not None:
         result, stopped = of_stock(study, search, result)
+    result = result.model_copy(update={"bound": mass_bound(study, result)})
     provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
     config = of_chosen_sizes(study, result).model_dump(mode="json")
     result = result.model_copy(update={"provenance": provenance, "config": config})

@@ -32,8 +32,10 @@ format: $(VENV)/installed-dev
 
 benchmark: $(VENV)/installed
 	$(BIN)/python benchmarks/optimise.py
+	$(BIN)/python benchmarks/main_job.py
 	$(BIN)/python benchmarks/transients.py
 	$(BIN)/python benchmarks/charts.py
+	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/start.py
 
 # the documentation as HTML; notebooks are run, a warning is an error

@@ -33,6 +33,8 @@ CHOICES: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {  # name: the layo
     "hinge width 0.15 m": (LAYOUTS, {"damper__links__hinge_width": 0.15}),
     "hinge width 0.25 m": (LAYOUTS, {"damper__links__hinge_width": 0.25}),
     "hinge width 0.35 m": (LAYOUTS, {"damper__links__hinge_width": 0.35}),
+    "hinges held on the axis": (LAYOUTS, {"damper__links": {"form": "a_frame"}}),
+    "strut 0.2 m wide": (LAYOUTS, {"damper__links__strut_width": 0.2}),
     "arm i_section": (ARMS, {"mass__arm_section": I_SECTION}),
     "lower_lug_height 0.25 m": (LAYOUTS, {"mass__lower_lug_height": 0.25}),
     "links and support cantilever": (

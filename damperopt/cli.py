@@ -14,8 +14,11 @@ with interrupts.at_once():
 
     from .commands import (
         analyse,
+        breakout,
         chart,
         components,
+        cycles,
+        gains,
         init,
         optimise,
         report,
@@ -40,7 +43,25 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would eat "[default: ...]" and "damperopt[cluster]"
 )
-for command in (optimise, verify, report, analyse, simulate, chart, sweep, tyre, thesis, components, validate, init, schema):
+IN_ORDER = (
+    optimise,
+    verify,
+    report,
+    analyse,
+    simulate,
+    cycles,
+    breakout,
+    chart,
+    sweep,
+    tyre,
+    gains,
+    thesis,
+    components,
+    validate,
+    init,
+    schema,
+)
+for command in IN_ORDER:
     app.command(short_help=(command.__doc__ or "").splitlines()[0])(command)  # as it is: by itself it would end at "C."
 
 

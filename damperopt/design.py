@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
+from .cycles.requirement import check_limit_cycles, cycle_failure
 from .errors import ConfigError, Unfinished
 from .lightest import mass_bound
 from .motion.exact import ExactSimulator
@@ -23,6 +24,7 @@ from .optimum.answer import (
     not_checked,
     nothing_yet,
     start_result,
+    worst_of,
 )
 from .optimum.diagnose import diagnose
 from .optimum.exchange import EnvelopeSolution
@@ -44,6 +46,7 @@ from .results import (
     MassResult,
     Verification,
 )
+from .stability.fail_safe import passive_rest
 from .study.components import optimisable
 from .study.study import Study
 from .workers import executor
@@ -162,8 +165,8 @@ def combinations(study: Study, topologies: Sequence[str], materials: Sequence[st
     """
     if not topologies and not study.variables:
         raise ConfigError(
-            f"{study.name}: damper.topology: 'rotational' has no design variables to optimise; "
-            f"allowed: {', '.join(optimisable())} (or use 'damperopt analyse')"
+            f"{study.name}: damper.topology: 'rotational' has no design variables with kind '{study.damper.kind}'; allowed: "
+            f"{', '.join(optimisable())}, or kind vane (or use 'damperopt analyse', for kind friction 'damperopt breakout')"
         )
     variants = []
     for topology in topologies or [study.damper.topology]:
@@ -254,13 +257,20 @@ def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
 
 
 def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
-    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it."""
+    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it.
+
+    With an actuator, so do the points that the proof without it finds.
+    """
     study, model = solver.problem.study, solver.problem.model
+    rest = passive_rest(study)
     certificate = certify(study, best.solution.design, model=model)
     for _ in range(REFINEMENTS):
-        if (place := certificate.place) is None:
+        places = [] if certificate.place is None else [certificate.place]
+        off = None if rest is None else certify(rest, best.solution.design).place
+        places += [] if off is None else [(*off[:2], -off[2])]
+        if not places:
             break
-        again = held_again(solver, best, [place])
+        again = held_again(solver, best, places)
         if not again.solved:
             break
         best, certificate = again, certify(study, again.solution.design, model=model)
@@ -307,13 +317,16 @@ def _checked(
     base: DesignResult,
 ) -> DesignResult:
     """Result of the best local optimum, with proof and verification."""
-    problem, solution, worst = solver.problem, best.solution, best.worst[0]
+    problem, solution, worst = solver.problem, best.solution, worst_of(best)
     study = problem.study
     grid = check_grid(study, solution.design, model=problem.model)
     agreeing = sum(s.solution.objective <= solution.objective * (1 + SAME_MASS) for s in solved)
-    failures = []
+    failures, rest = [], passive_rest(study)
+    fail_safe = None if rest is None else certify(rest, solution.design)
     if not certificate.proved:
         failures.append(f"the exact certificate does not hold: {certificate.reason}")
+    if fail_safe is not None and not fail_safe.proved:
+        failures.append(f"the exact certificate with the actuator off does not hold: {fail_safe.reason}")
     if not grid.passed:
         failures.append(
             f"an eigenvalue has the real part {grid.worst.abscissa:.6g} 1/s at {grid.worst.speed:.6g} m/s, "
@@ -335,6 +348,9 @@ def _checked(
             failures.append(
                 f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN{_times(factor)}"
             )
+    cycles = check_limit_cycles(study, solution.design)
+    if cycles is not None and not cycles.passed:
+        failures.append(cycle_failure(cycles))
     simulated = {} if decay is None else decay.peaks
     rows = margin_rows(study, solution.design, simulated)
     failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]
@@ -355,6 +371,8 @@ def _checked(
     weights, warm = decided_by(constraints, mass), damping_over_temperature(study, solution.design)
     viscous = problem.units.get(study.damper.VISCOUS, "")
     message = f"lightest design found: {mass:.4g} kg, proved stable at every speed of the envelope"
+    if fail_safe is not None:
+        message += f", and with the actuator off with the margin {fail_safe.margin:g} 1/s"
     if weights:
         message += f"; the mass is decided by {next(iter(weights))}"
     message = "; ".join(failures) or message
@@ -372,10 +390,12 @@ def _checked(
             "stability": worst,
             "constraints": constraints,
             "decay": decay,
+            "limit_cycle": cycles,
             "decided_by": weights,
             "loads": load_rows(study, solution.design, simulated),
             "margins": rows,
             "certificate": certificate,
+            "fail_safe": fail_safe,
             "verification": verification,
             "sensitivities": sensitivities(problem, solution, solver.decay if decay else None),
         }

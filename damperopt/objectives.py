@@ -74,5 +74,7 @@ def sized_layout(study: Any, design: Mapping[str, Any], linkage: Linkage, load: 
             f"damper.kind: '{study.damper.kind}' has no mass model; allowed: a kind that sizes its parts (or 'analyse')"
         )
     masses = {**study.damper.masses(design, event, study), **damper.masses}
+    if study.damper.actuator is not None and study.damper.actuator.mass is not None:
+        masses["actuator"] = study.damper.actuator.mass
     sizes = (*member_sizes(study, design, event), *damper.sizes)
     return SizedLayout(event, masses, sizes, damper.length, damper.capacities)

@@ -15,7 +15,7 @@ from .answers.loads import LoadRow, MarginRow
 from .answers.older import completed
 from .answers.search import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
 from .answers.stock import StockCandidate, StockResult
-from .answers.verdicts import FINITE, Certificate, DecayCheck, OperatingPoint, Verdict
+from .answers.verdicts import FINITE, Certificate, DecayCheck, LimitCycleCheck, OperatingPoint, Verdict
 from .errors import ConfigError
 from .reading import MOST_RESULT_BYTES, printable, text_of
 
@@ -26,6 +26,7 @@ __all__ = [
     "DecayCheck",
     "DesignResult",
     "Infeasibility",
+    "LimitCycleCheck",
     "LoadRow",
     "LocalOptimum",
     "MarginRow",
@@ -132,7 +133,8 @@ class DesignResult(_Record):
     per cent of the limits of each kind of constraint.
     `verdict` is that of the certificate, `covers` and `leaves_out` say what it is about and what it is not; `witness` has the
     coordinates of a point that refutes it by name [SI]. `rests_on` says what kind of numbers strength and life rest on,
-    `implausible` what a practitioner would not believe, `completed` what a file of an older version did not hold.
+    `implausible` what a practitioner would not believe, `completed` what a file of an older version did not hold. `fail_safe`
+    is the certificate of the gear with its actuator off, where it has one.
     """
 
     schema_version: Literal[2] = 2
@@ -161,8 +163,10 @@ class DesignResult(_Record):
     leaves_out: tuple[str, ...] = ()
     completed: tuple[str, ...] = ()
     certificate: Certificate | None = None
+    fail_safe: Certificate | None = None
     verification: Verification | None = None
     decay: DecayCheck | None = None
+    limit_cycle: LimitCycleCheck | None = None
     bound: MassBound | None = None
     decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
@@ -207,6 +211,8 @@ class DesignResult(_Record):
             or proof.margin < self.stability_margin
         ):
             raise _impossible("status solved without a certificate that proves its margin", proof.reason)
+        if self.fail_safe is not None and (self.fail_safe.found != "proved" or not self.fail_safe.proved):
+            raise _impossible("status solved without a proof for the actuator off", self.fail_safe.reason)
         decayed = decay is None or (decay.passed and decay.ratio <= decay.limit)
         if not (check.passed and check.grid_passed and decayed):
             raise _impossible("status solved with a check that has not passed", self.message)

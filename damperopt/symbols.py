@@ -6,6 +6,7 @@ graph serves every value, and the solver returns the derivative of the optimum w
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,6 +60,8 @@ def symbolic(study: Study) -> SymbolicStudy:
             value, inner = getattr(record, key), f"{path}.{key}"
             if isinstance(value, BaseModel) and key not in _constants(record):
                 value = twin(value, inner)
+            elif isinstance(value, Mapping) and key not in _constants(record):
+                value = {**value, **{name: twin(part, f"{inner}.{name}") for name, part in _records(value)}}
             fields[key] = symbols.get(inner, value)
         return type(record).model_construct(**fields)
 
@@ -88,12 +91,19 @@ def _numbers(study: Study) -> list[tuple[str, float]]:
                 continue
             if isinstance(value, BaseModel):
                 found += walk(value, f"{path}.{key}")
+            elif isinstance(value, Mapping):
+                found += [number for name, part in _records(value) for number in walk(part, f"{path}.{key}.{name}")]
             elif isinstance(value, float):
                 found.append((f"{path}.{key}", value))
         return found
 
     blocks = ((key, getattr(study, key)) for key in _DATA_BLOCKS)
     return [number for key, block in blocks if block is not None for number in walk(block, key)]
+
+
+def _records(block: Mapping[str, Any]) -> Iterator[tuple[str, BaseModel]]:
+    """Records that stand under names of the user."""
+    return ((name, part) for name, part in block.items() if isinstance(part, BaseModel))
 
 
 def _constants(record: BaseModel) -> tuple[str, ...]:

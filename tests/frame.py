@@ -74,14 +74,34 @@ class Frame:
         return float(getattr(self.fe.nodes[node], way)["Combo 1"])
 
 
+def half_beam(frame: Frame, name: str, middle: str, y: float, h: float, I: float, strut: float) -> str:
+    """Half of a hinge line out to y, a tube that is held where it leaves the strut; its end."""
+    end = frame.node(f"{name} end", (0, y, h))
+    if strut:
+        side = frame.node(f"{name} side", (0, math.copysign(strut / 2, y), h))
+        frame.rigid(f"{name} inside", middle, side)
+        middle = side
+    frame.bar(name, middle, end, tube_area(I), I)
+    return end
+
+
 def torque_link(
-    frame: Frame, name: str, hinge: str, apex: str, h: float, form: str, w: float, L: float, A: float, I: float
+    frame: Frame,
+    name: str,
+    hinge: str,
+    apex: str,
+    h: float,
+    form: str,
+    w: float,
+    L: float,
+    link: tuple[float, ...],
+    strut: float,
 ) -> None:
     """From a hinge at height h, on the node `hinge` on the axis, to the apex: two legs, or one tapered link that bends."""
+    A, I, I_hinge = link
     if form == "a_frame":
         for side, y in (("left", -w / 2), ("right", w / 2)):
-            foot = frame.node(f"{name} foot {side}", (0, y, h))
-            frame.rigid(f"{name} beam {side}", hinge, foot)
+            foot = half_beam(frame, f"{name} beam {side}", hinge, y, h, I_hinge, strut)
             frame.bar(f"{name} leg {side}", foot, apex, A, 1e-9, truss=True)
         return
     frame.tapered(name, hinge, apex, A, I, joint=True)
@@ -93,7 +113,9 @@ def tube_area(I: Any, ratio: float = 0.1) -> Any:
     return (16 * I * shape / (1 + (1 - 2 * ratio) ** 2)) ** 0.5
 
 
-def layout(topology: str, design: dict[str, float], E: float, k_d: float, links: str, support: str, root: str) -> Frame:
+def layout(
+    topology: str, design: dict[str, float], E: float, k_d: float, links: str, support: str, root: str, strut: float
+) -> Frame:
     """All that stands between the piston and the strut, hinges half as wide as the links are long, turned by 1 kN m.
 
     Parameters
@@ -104,54 +126,65 @@ def layout(topology: str, design: dict[str, float], E: float, k_d: float, links:
     L, b = design["L"], design.get("b", 0.0)
     ell, h, w, legs = L * math.sin(design["gamma"]), L * math.cos(design["gamma"]), L / 2, links == "a_frame"
     frame, link = Frame(E), (design.get("A_link", 1.0), design.get("I_link", 1.0))
-    link = (link[0] if legs else tube_area(link[1]), link[1] if not legs else 1e-9)
+    link = (link[0] if legs else tube_area(link[1]), link[1] if not legs else 1e-9, design.get("I_hinge", 1.0))
     hinge = "DX DY DZ RX" + " RY" * legs  # legs have no stiffness against turning about the hinge; they need none
     frame.node("piston", (0, 0, -h), hinge)
     frame.node("apex", (ell, 0, 0))
-    torque_link(frame, "lower", "piston", "apex", -h, links, w, L, *link)
+    torque_link(frame, "lower", "piston", "apex", -h, links, w, L, link, strut)
     arm = design.get("I_arm", 1.0)
     if topology == "boeing":
         frame.node("strut", (0, 0, h), hinge + " RZ")
         frame.node("D", (ell, 0.01, 0))
-        torque_link(frame, "upper", "strut", "D", h, links, w, L, *link)
+        torque_link(frame, "upper", "strut", "D", h, links, w, L, link, strut)
         frame.fe.def_support("apex", support_RX=True, support_RY=True, support_RZ=True)
         frame.rigid("slider", "apex", "D")  # spring and damper let the ends of the links part sideways alone
         frame.fe.def_releases("slider", Dxj=True)
         frame.spring("spring", "apex", "D", design["k_lambda"])
     elif topology == "utas":
         frame.node("strut", (0, 0, h), "DX DY DZ RX RZ")
-        frame.node("arm root", (0, b, h))
-        frame.node("D", (0, -b, h))
-        for name, start, end in (("near", "strut", "arm root"), ("far", "strut", "D"), ("arm", "arm root", "apex")):
-            frame.bar(name, start, end, tube_area(arm), arm)
+        root = half_beam(frame, "near", "strut", b, h, arm, strut)
+        held = half_beam(frame, "far", "strut", -b, h, arm, strut)
+        frame.bar("arm", root, "apex", tube_area(arm), arm)
     else:
         frame.node("strut", (0, 0, h), "DX DY DZ RX RZ")
         frame.bar("arm", "strut", "apex", tube_area(arm), arm)
-        _support(frame, design, ell, h, support, root)
-    frame.spring("damper", "apex", "D", k_d)
+        _support(frame, design, ell, h, support, root, strut)
+        held = "D"
+    frame.spring("damper", "apex", held if topology == "utas" else "D", k_d)
     frame.fe.add_node_load("piston", "MZ", 1e3)
     frame.solved()
     return frame
 
 
-def _support(frame: Frame, design: dict[str, float], ell: float, h: float, form: str, root: str) -> None:
+def _support(frame: Frame, design: dict[str, float], ell: float, h: float, form: str, root: str, strut: float) -> None:
     """Of the damper's outer end at (ell, -b, 0)."""
     L, b, fixed = design["L"], design["b"], "DX DY DZ RX RY RZ"
     if form == "cantilever":
         frame.node("D", (ell, -b, 0))
-        frame.node("support root", (0, -b, h) if root == "hinge_line" else (0, 0, 0), fixed)
-        frame.tapered("support", "support root", "D", tube_area(design["I_support"]), design["I_support"])
+        if root == "hinge_line":
+            frame.node("support middle", (0, 0, h), fixed)
+            half_beam(frame, "support root", "support middle", -b, h, design["I_support"], strut)
+        else:
+            frame.node("support root end", (0, 0, 0), fixed)
+        frame.tapered("support", "support root end", "D", tube_area(design["I_support"]), design["I_support"])
         return
     frame.node("D", (ell, -b, 0), "RX RY RZ")
+    frame.node("support middle", (0, 0, h), fixed)
     for side, y in (("left", -L / 4), ("right", L / 4)):
-        foot = frame.node(f"support foot {side}", (0, y, h), fixed)
+        foot = half_beam(frame, f"support foot {side}", "support middle", y, h, design["I_foot"], strut)
         frame.bar(f"support leg {side}", foot, "D", design["A_support"], 1e-9, truss=True)
     frame.node("prop", (ell + h / L, -b, ell / L), fixed)  # across the plane of the legs, where nothing pulls
     frame.bar("prop", "prop", "D", 10.0, 1e-9, truss=True)
 
 
 def compliance(
-    topology: str, design: dict[str, float], E: float, links: str = "a_frame", support: str = "a_frame", root: str = ""
+    topology: str,
+    design: dict[str, float],
+    E: float,
+    links: str = "a_frame",
+    support: str = "a_frame",
+    root: str = "",
+    strut: float = 0.0,
 ) -> tuple[float, float, float]:
     """(c11, c12, c22) of yaw angle psi and damper stroke e under torque T and damper force F, of two frames.
 
@@ -164,9 +197,10 @@ def compliance(
     along = [x / math.hypot(*away) for x in away]
 
     def moved(k_d: float) -> tuple[float, float]:
-        frame = layout(topology, design, E, k_d, links, support, root or "hinge_line")
+        frame = layout(topology, design, E, k_d, links, support, root or "hinge_line", strut)
+        held = "far end" if topology == "utas" else "D"
         stroke = sum(
-            n * (frame.moved("apex", way) - frame.moved("D", way)) for n, way in zip(along, ("DX", "DY", "DZ"), strict=True)
+            n * (frame.moved("apex", way) - frame.moved(held, way)) for n, way in zip(along, ("DX", "DY", "DZ"), strict=True)
         )
         return frame.moved("piston", "RZ") / 1e3, stroke / 1e3
 

@@ -70,6 +70,13 @@ def worst(matrices: Any) -> tuple[float, float]:
     return abscissa, ratio
 
 
+def feet_on_beam(E: float, I: Any, L: Any, w: Any, across: Any) -> Any:
+    """Of a unit force at the apex of two legs: feet bend and push the halves of a tube, wall a tenth, clamped in its middle."""
+    q, halves = L / w, (across / w + 1 / 2, across / w - 1 / 2)
+    A = np.sqrt(I * 16 * np.pi * 0.09 / (1 + 0.8**2))
+    return sum(q**2 * (w / 2) ** 3 / (3 * E * I) + y**2 * (w / 2) / (E * A) for y in halves)
+
+
 def chain_by_hand(
     topology: str, d: dict[str, Any], E: float, forms: tuple[str, str, str], arm_area: Any = None
 ) -> tuple[Any, Any, Any]:
@@ -82,7 +89,9 @@ def chain_by_hand(
     L, ell = d["L"], d["L"] * np.sin(d["gamma"])
     w = L / 2
     leg = np.sqrt(L**2 + w**2 / 4)
-    front = 2 * leg**3 / (E * d["A_link"] * w**2) if links == "a_frame" else 3 / 5 * L**3 / (E * d["I_link"])
+    front = 3 / 5 * L**3 / (E * d["I_link"]) if links == "cantilever" else 2 * leg**3 / (E * d["A_link"] * w**2)
+    if links == "a_frame":
+        front = front + feet_on_beam(E, d["I_hinge"], L, w, 0.0)
     if topology == "boeing":
         k = d["k_lambda"]
         return (2 * front + 1 / k) / ell**2, 1 / k / ell, 1 / k + 0 * ell
@@ -91,9 +100,9 @@ def chain_by_hand(
         bent = L**3 / (3 * EI)
         if support == "a_frame":
             legs = [np.sqrt(L**2 + (b + y) ** 2) for y in (w / 2, -w / 2)]
-            held = (legs[0] ** 3 + legs[1] ** 3) / (E * d["A_support"] * w**2)
+            held = (legs[0] ** 3 + legs[1] ** 3) / (E * d["A_support"] * w**2) + feet_on_beam(E, d["I_foot"], L, w, b)
         elif root == "hinge_line":
-            held = 3 / 5 * L**3 / (E * d["I_support"])
+            held = (3 / 5 * L**3 + L**2 * b) / (E * d["I_support"])
         else:
             held = 3 / 5 * np.sqrt(ell**2 + b**2) * ell**2 / (E * d["I_support"])
         return (front + bent) / ell**2, bent / ell, bent + held

@@ -20,6 +20,7 @@ GEAR: dict[str, Any] = {
 }
 TYRE: dict[str, Any] = {
     "law": "linear",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "cornering_slope": 0.014,
@@ -28,6 +29,7 @@ TYRE: dict[str, Any] = {
 }
 CARCASS: dict[str, Any] = {
     "law": "stiffness",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "carcass_stiffness": 1.4e6,

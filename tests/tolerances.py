@@ -129,3 +129,13 @@ SAME_WORST = 2e-3
 
 ON_THE_CURVE = 1e-11
 """Of the largest entry of the state matrix; rounding of its eigenvalues, after roots to 1e-13 of the ranges."""
+
+RETURNED = 1e-6
+"""Of the largest value of each state; an orbit by collocation of order 7 after one period of DOP853 at 1e-11."""
+
+DIFFERENCED = 1e-4
+"""Multiplier by central differences of 1e-5 of the orbit's size, whose error goes with their square; corners are met a little
+beside where they are."""
+
+DECAY_BY_CUBES = 0.02
+"""Relative; the next term of the normal form at 0.02 rad, and the tail of the lateral mode in the peaks."""

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from pydantic import ConfigDict
 
-__all__ = ["FINITE", "Certificate", "DecayCheck", "OperatingPoint"]
+__all__ = ["FINITE", "Certificate", "DecayCheck", "LimitCycleCheck", "OperatingPoint"]
 
 FINITE = ConfigDict(allow_inf_nan=False, extra="forbid")
 """What `optimise` cannot have written is refused when a file is read: a NaN would pass for proved."""
@@ -136,3 +136,33 @@ class DecayCheck:
     peaks: dict[str, float]
     engine: str = ""
     damping: float = 1.0
+
+
+@dataclass(frozen=True)
+class LimitCycleCheck:
+    """Limit cycles of a design over the envelope, as branches from motions show them.
+
+    Attributes
+    ----------
+    passed : bool
+        No stable cycle of more yaw was found, and no branch was lost.
+    limit, yaw_angle : float
+        Largest amplitude allowed, and found [rad]; 0 where no stable cycle was found.
+    speed, load : float
+        Where it is largest [m/s], [N].
+    gap : float
+        Play of the apex joint to one side [m].
+    branches, lost : int
+        How many were followed, and on how many the method failed before their ends.
+    """
+
+    __pydantic_config__: ClassVar[ConfigDict] = FINITE
+
+    passed: bool
+    limit: float
+    yaw_angle: float
+    speed: float
+    load: float
+    gap: float
+    branches: int
+    lost: int

@@ -102,8 +102,10 @@ class Axis:
         lowest = 0.0 if full in (*OPERATING, *study.variable_names) else -np.inf
         if low < lowest or (full == "speed" and low == 0):
             raise ConfigError(f"{name}: found {low:g} {unit}; allowed: {'> 0' if full == 'speed' else '>= 0'}")
-        if full == "vertical_load" and (words := next(filter(None, map(study.beyond_tyre, (low, high))), "")):
-            raise ConfigError(f"{name}: the range {low:g} to {high:g} N {words}; allowed: loads that the tyre has data for")
+        if full == "vertical_load" and (words := next(filter(None, map(study.beyond_data, (low, high))), "")):
+            raise ConfigError(
+                f"{name}: the range {low:g} to {high:g} N {words}; allowed: loads that tyre and strut have data for"
+            )
         if lowest == -np.inf:
             for end in (low, high):
                 study.replace(**{full.replace(".", "__"): float(end)})  # what a study may not have, a chart may not show
@@ -161,8 +163,8 @@ class Plane:
     def __post_init__(self) -> None:
         if self.x.name == self.y.name:
             raise ConfigError(f"{self.x.name}: found on both axes; allowed: two different quantities")
-        if "vertical_load" not in (self.x.name, self.y.name) and (words := self.study.beyond_tyre(self.load)):
-            raise ConfigError(f"load: {self.load:g} N {words}; allowed: loads that the tyre has data for")
+        if "vertical_load" not in (self.x.name, self.y.name) and (words := self.study.beyond_data(self.load)):
+            raise ConfigError(f"load: {self.load:g} N {words}; allowed: loads that tyre and strut have data for")
 
     @property
     def evaluations(self) -> int:

@@ -1,8 +1,11 @@
 """Commands of the command line, a file each."""
 
 from .analyse import analyse
+from .breakout import breakout
 from .chart import chart
 from .components import components
+from .cycles import cycles
+from .gains import gains
 from .optimise import optimise
 from .report import report
 from .simulate import simulate
@@ -14,8 +17,11 @@ from .verify import verify
 
 __all__ = [
     "analyse",
+    "breakout",
     "chart",
     "components",
+    "cycles",
+    "gains",
     "init",
     "optimise",
     "report",

@@ -34,6 +34,8 @@ def chart(
     from ..charts.chart import chart as trace_chart
     from ..charts.maps import filled_map
     from ..charts.plane import Plane
+    from ..charts.waves import boundary_wavelength
+    from ..optimum.left_out import left_out_by_number
     from ..output.folder import run_folder, write_run
     from ..output.gallery import write_chart_files
     from ..quantities.record import Force, Rate, Speed
@@ -70,5 +72,6 @@ def chart(
             plane = Plane(study, record.x, record.y, record.design, record.speed, record.load, record.margin)
             filled = filled_map(plane, fill)  # type: ignore[arg-type]  # one of the two, checked above
         write_run(folder, lambda place: write_chart_files(place, record, filled, neutral))
-    summary.show_chart(out, record)
+    summary.show_chart(out, record, left_out_by_number(study, study.start if values is None else values))
+    summary.show_contact_line(out, study, boundary_wavelength(study, record))
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)

@@ -52,13 +52,16 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
     console.print(table)
     _show_loads(console, result)
     console.print(worst_words(worst, certificate))
-    proved = "[green]proved[/]" if certificate.proved else "[red]NOT proved[/]"
-    loads = f"{' to ' if certificate.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in certificate.loads)
-    console.print(
-        f"Exact certificate: {proved}: margin {certificate.margin:g} 1/s at every speed from {certificate.speed[0]:g} to "
-        f"{certificate.speed[1]:g} m/s, {loads} kN{dampings(certificate)}",
-        soft_wrap=True,
-    )
+    for proof, off in ((certificate, ""), (result.fail_safe, ", actuator off")):
+        if proof is None:
+            continue
+        proved = "[green]proved[/]" if proof.proved else "[red]NOT proved[/]"
+        loads = f"{' to ' if proof.over_a_range else ', '}".join(f"{load / 1e3:g}" for load in proof.loads)
+        console.print(
+            f"Exact certificate{off}: {proved}: margin {proof.margin:g} 1/s at every speed from {proof.speed[0]:g} to "
+            f"{proof.speed[1]:g} m/s, {loads} kN{dampings(proof)}",
+            soft_wrap=True,
+        )
     console.print(escape(next(iter(result.covers or covers(study)))), soft_wrap=True)
     console.print(
         f"Eigenvalues on {check.grid_speeds} x {check.grid_loads} points: worst {check.worst.abscissa:.6f} 1/s; "
@@ -75,6 +78,16 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
             f"{decay.load / 1e3:g} kN{times(decay.damping, certificate)}, the worst of {decay.simulations} exact simulations; "
             f"required {decay.limit:.5f}"
             f"; optimised with {decay.engine}",
+            soft_wrap=True,
+        )
+    if result.limit_cycle is not None:
+        cycle = result.limit_cycle
+        verdict = "[green]kept[/]" if cycle.passed else "[red]NOT kept[/]"
+        largest = " ".join(number_and_unit(cycle.yaw_angle, "rad")) if cycle.yaw_angle else "none"
+        console.print(
+            f"Limit cycles: {verdict}: largest stable one {largest} at {cycle.speed:.2f} m/s, {cycle.load / 1e3:g} kN, with "
+            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost; required "
+            f"{' '.join(number_and_unit(cycle.limit, 'rad'))}; a search, no proof",
             soft_wrap=True,
         )
     if result.decided_by:

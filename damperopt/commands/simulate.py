@@ -24,7 +24,7 @@ LONGEST = 3.0
 
 def simulate(
     file: ConfigArgument,
-    speed: Annotated[str, typer.Option(help="Speed in m/s, such as 40, or '120 kt'.")],
+    speed: Annotated[str, typer.Option(help="Speed in m/s, such as 40, or '120 kt'.")] = "",
     design: DesignOption = None,
     load: Annotated[str, typer.Option(help="Vertical load [N]. [default: the largest of the envelope]")] = "",
     release: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help="yaw, bending or string let go.")] = None,
@@ -33,23 +33,32 @@ def simulate(
     unbalance: Annotated[list[str] | None, typer.Option(metavar="moment=VALUE", help="Rotating unbalance.")] = None,
     duration: Annotated[str, typer.Option(help="Time in s. [default: 12 cycles of the slowest mode, at most 3 s]")] = "",
     engine: Annotated[str, typer.Option(help="erk, cvodes, idas, exact (corners as events), or auto.")] = "auto",
+    history: Annotated[
+        Path | None,
+        typer.Option(help="CSV file of time, speed, load, and if wanted stroke and yaw_torque, in the place of --speed."),
+    ] = None,
     output: OutputOption = None,
 ) -> None:
     """Motion after a disturbance: trajectories, cycles, decay, and whether it settles, cycles or diverges.
 
-    Exit code 0 also where the motion diverges: that is an answer. 2: the question is not well posed.
+    Along a history of speed and load, such as a landing roll: peaks, and when the gear could shimmy. Exit code 0 also where
+    the motion diverges: that is an answer. 2: the question is not well posed.
     """
     from ..motion.exact import ExactSimulator
     from ..motion.integrators import ENGINES
     from ..motion.question import output_points, posed
     from ..motion.simulate import Simulator
     from ..motion.trajectory import motion_of
+    from ..optimum.left_out import left_out_by_number
     from ..output.folder import run_folder, write_run
     from ..output.tables import write_motion, write_trajectory
     from ..quantities.record import Force, Speed, Time
     from ..results import load_result
     from ..stability.linear import linear_gear
+    from ..stability.wavelength import shortest_wavelength
+    from ..study.cavitation import cavitation
     from . import summary
+    from .along import run_along
     from .arguments import disturbance_of, quantity
 
     study, values = study_and_design(file, design)
@@ -61,11 +70,20 @@ def simulate(
         disturbance = required.disturbance
     else:
         disturbance = disturbance_of({"release": ["yaw=1deg"]})
+    if engine not in ("auto", "exact", *ENGINES):
+        raise ConfigError(f"--engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
+    sized = load_result(design).limit_event if design is not None else {}
+    if history is not None:
+        for option, text in (("--speed", speed), ("--load", load), ("--duration", duration)):
+            if text:
+                raise ConfigError(f"{option}: found {text} beside --history, which says it; allowed: one of the two")
+        run_along(study, values, history, disturbance, any(given.values()), engine, output, file.stem, sized)
+        return
+    if not speed:
+        raise ConfigError("--speed: missing; allowed: a speed such as 40 or '120 kt', or --history with a CSV file")
     chosen = "" if any(given.values()) else "of requirements.decay" if required is not None else "as none was given"
     at_speed, at_load = quantity(speed, Speed, "--speed"), quantity(load, Force, "--load") if load else None
     seconds = quantity(duration, Time, "--duration") if duration else None
-    if engine not in ("auto", "exact", *ENGINES):
-        raise ConfigError(f"--engine: found '{engine}'; allowed: auto, exact, {', '.join(ENGINES)}")
     gear = linear_gear(study, values)
     if seconds is None:
         seconds = _enough(gear, at_speed, at_load or max(study.envelope.loads))
@@ -88,8 +106,13 @@ def simulate(
 
     write_run(folder, write)
     words = " ".join(filter(None, (summary.disturbance_words(disturbance), chosen)))
-    sized = load_result(design).limit_event if design is not None else {}
-    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized)
+    left_out = left_out_by_number(study, study.start if values is None else values)
+    wave = shortest_wavelength(study, gear, [at_speed], [motion.load])
+    summary.show_motion(out, motion, found, required.cycles if required else 3, words, sized, left_out)
+    summary.show_contact_line(out, study, wave)
+    force = found.peaks.get("damper_torque" if study.damper.ROTARY else "damper_force", 0.0)
+    if boils := cavitation(study, study.start if values is None else values, force):
+        out.print(f"[yellow]Cavitation[/]: {boils}", soft_wrap=True)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
 
 

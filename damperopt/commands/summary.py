@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..charts.chart import StabilityChart
+from ..cycles.criticality import Criticality
 from ..literature.arreaza2015 import Row
 from ..motion.measure import PEAKS
 from ..motion.trajectory import ROUNDING, Motion, Trajectory
@@ -19,13 +20,15 @@ from ..quantities.record import quantity_of
 from ..quantities.shown import rounded, scale, unit_text
 from ..results import Certificate, OperatingPoint
 from ..stability.critical import CriticalSpeed
-from ..stability.wavelength import Wavelength
+from ..stability.wavelength import Wavelength, contact_line_words
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from ..tyres.curves import TyreCurves
+from ..tyres.path_response import PathResponse
 from ..tyres.property_file import PropertyFile
+from .cycle_words import show_criticality
 
 __all__ = [
     "disturbance_words",
@@ -34,6 +37,7 @@ __all__ = [
     "show_analysis",
     "show_chart",
     "show_claims",
+    "show_contact_line",
     "show_motion",
     "show_tyre",
 ]
@@ -88,8 +92,9 @@ def show_motion(
     cycles: int,
     disturbance: str = "",
     sized: Mapping[str, float] = {},
+    left_out: Sequence[str] = (),
 ) -> None:
-    """What a trajectory shows, after what, and beside the loads that the parts were sized for."""
+    """What a trajectory shows, after what, beside the loads that the parts were sized for, and what its model leaves out."""
     console.print(
         f"\n[bold]{motion.kind}[/]: {trajectory.speed:g} m/s, {trajectory.load / 1e3:g} kN, {trajectory.time[-1]:.4g} s"
     )
@@ -118,6 +123,12 @@ def show_motion(
             shown = number_and_unit(value, unit) if unit == "rad" else (f"{value:.4g}", unit)
             table.add_row(name.replace("_", " "), *shown, *((beside,) if sized else ()))
     console.print(table)
+    _show_left_out(console, left_out)
+
+
+def _show_left_out(console: Console, words: Sequence[str]) -> None:
+    if words:
+        console.print("Left out: " + escape("; ".join(words)), soft_wrap=True, style="dim")
 
 
 def show_analysis(
@@ -130,9 +141,11 @@ def show_analysis(
     searched: tuple[float, float],
     wave: Wavelength | None,
     marginal: bool = False,
+    fail_safe: Sequence[Certificate] = (),
     left_out: Sequence[str] = (),
+    criticality: Sequence[Criticality] = (),
 ) -> None:
-    """Critical speeds, worst point and certificates of a given design."""
+    """Critical speeds and how their limit cycles begin, worst point and certificates of a given design."""
     console.print(f"\n[bold]{escape(study.name)}[/], {study.damper.topology} ({study.damper.geometry})")
     if design:
         text = ", ".join(" ".join((name, *number_and_unit(value, unit_of_name(name)))) for name, value in design.items())
@@ -146,6 +159,7 @@ def show_analysis(
             direction = "destabilised" if c.destabilising else "stabilised"
             table.add_row(f"{_fixed(c.speed)} m/s", f"{c.load / 1e3:g} kN", c.kind, f"{c.frequency:.3f} Hz", direction, change)
         console.print(table)
+        show_criticality(console, criticality)
     else:
         low, high = searched
         console.print(
@@ -155,26 +169,24 @@ def show_analysis(
         )
     console.print(worst_words(worst, certificates[0]))
     console.print(escape(" ".join(covers(study))), soft_wrap=True)
-    for certificate in certificates:
+    for i, certificate in enumerate((*certificates, *fail_safe)):
         goal = "stable" if certificate.margin == 0 else f"margin {certificate.margin:g} 1/s"
+        goal += ", actuator off" if i >= len(certificates) else ""
         verdict = "[green]proved[/] over the whole envelope" if certificate.proved else f"[red]{escape(certificate.reason)}[/]"
         if certificate.counterexample is not None:
             verdict = f"[red]not met[/]: {escape(certificate.reason)}"
         console.print(f"Exact certificate, {goal}{dampings(certificate)}: {verdict}", soft_wrap=True)
     console.print("Not checked: " + escape("; ".join((*left_out, *leaves_out(study)))), soft_wrap=True, style="dim")
-    if wave is not None:
-        _show_wavelength(console, wave, study.tyre.contact.least_wave())
+    show_contact_line(console, study, wave)
 
 
-def _show_wavelength(console: Console, wave: Wavelength, least: float) -> None:
-    console.print(
-        f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.2g} contact lengths, at {wave.speed:g} m/s",
-        soft_wrap=True,
-    )
-    if wave.contact_lengths < least:
+def show_contact_line(console: Console, study: Study, wave: Wavelength | None) -> None:
+    """The shortest wave, and what it means for a contact line that is not the exact one."""
+    if words := contact_line_words(study, wave):
+        console.print(f"[yellow]Rests on[/]: {escape(words[0])}.", soft_wrap=True)
+    elif wave is not None:
         console.print(
-            f"[yellow]Below {least:.3g} contact lengths a tyre without memory of its contact line is doubtful[/]: "
-            "the verdict holds for this tyre law, and may not for the tyre.",
+            f"Shortest wavelength: {wave.length:.3g} m, {wave.contact_lengths:.3g} contact lengths, at {wave.speed:.4g} m/s",
             soft_wrap=True,
         )
 
@@ -199,8 +211,9 @@ def number_and_unit(value: float, unit: str) -> tuple[str, str]:
     return f"{value:.5g}", unit
 
 
-def show_chart(console: Console, record: StabilityChart) -> None:
-    """Families of a chart with the length, kind and frequency of their curves."""
+def show_chart(console: Console, record: StabilityChart, left_out: Sequence[str] = ()) -> None:
+    """Families of a chart with the length, kind and frequency of their curves, and what its model leaves out."""
+    _show_left_out(console, left_out)
     table = Table(box=None, pad_edge=False)
     varied, unit = (record.varied.name, record.varied.unit) if record.varied else ("boundary", "")
     for name in (varied, "curves", "points", "type", "frequency", "corners"):
@@ -251,6 +264,9 @@ def show_claims(console: Console, rows: Sequence[Row]) -> None:
         console.print(f"{form}: {sum(agreed)} of {len(agreed)} agree")
 
 
+SHOWN_WAVES = 50.0, 16.0, 8.0, 4.0, 2.0
+"""Contact lengths per wave at which contact lines are compared."""
+
 TYRE_LOADS = 4
 """Columns of the table of a tyre; the file has more."""
 
@@ -272,6 +288,31 @@ def show_tyre(console: Console, record: TyreCurves, tyre: Any, read: PropertyFil
         cells = [rounded(v * factor) if math.isfinite(v) else "-" for v in column.values[shown]]
         table.add_row(name.replace("_", " "), *cells, unit)
     console.print(table)
+    if record.response is not None:
+        _show_response(console, record.response)
+
+
+def _show_response(console: Console, found: PathResponse) -> None:
+    """How far each contact line is from the exact one, over the wavelength."""
+    columns = [int(np.abs(found.contact_lengths - length).argmin()) for length in SHOWN_WAVES]
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    table.add_column("contact line", no_wrap=True)
+    for at in columns:
+        table.add_column(f"{found.contact_lengths[at]:.3g}", justify="right", no_wrap=True)
+    table.add_column("within 10 % from", justify="right", no_wrap=True)
+    for line in list(found.lines)[1:]:
+        worst, least = 100 * found.errors(line).max(axis=0), found.holds_to(line)
+        table.add_row(line, *(_percent(worst[at]) for at in columns), f"{least:.3g}" if math.isfinite(least) else "never")
+    console.print(
+        f"Distance of force and moment at {found.load / 1e3:.4g} kN from those of the exact contact line (memory), over "
+        "contact lengths per wave:",
+        soft_wrap=True,
+    )
+    console.print(table)
+
+
+def _percent(value: float) -> str:
+    return "< 0.01 %" if value < 0.01 else f"{value:.2g} %" if value < 100 else f"{value:.0f} %"
 
 
 def _about_file(read: PropertyFile) -> list[str]:

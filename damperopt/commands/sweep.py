@@ -60,6 +60,7 @@ def sweep(
     bad = [record for record in records.values() if not record.good]
     for record in bad[:10]:
         err.print(f"point {record.index}, {todo.points[record.index].values}: {record.status}: {record.message}", markup=False)
+    _say_what_it_rests_on(todo, records)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
     if came:
         raise Interrupted(f"interrupted; the results are whole in {folder}")
@@ -72,6 +73,25 @@ def _say_what_makes_no_study(todo: Sweep) -> None:
     if empty:
         of = f"{len(probes)} points" if len(probes) == len(todo.points) else f"{len(probes)} points that were tried"
         err.print(f"{len(empty)} of {of} make no study, the first: {empty[0].problem}", markup=False)
+
+
+def _say_what_it_rests_on(todo: Sweep, records: dict[int, PointRecord]) -> None:
+    """At how many points the waves are too short for the contact line of the base, where that is not the exact one."""
+    line = todo.points.base.tyre.contact
+    waves = [
+        record.numbers["contact_lengths_per_wave"]
+        for record in records.values()
+        if "contact_lengths_per_wave" in record.numbers
+    ]
+    short = [wave for wave in waves if wave < line.least_wave()]
+    if short:
+        out.print(
+            f"Rests on: the contact line {line.contact} stands for the exact one (tyre.contact memory), and may not hold for "
+            f"{len(short)} of {len(waves)} points: a wave of {min(short):.3g} contact lengths is the shortest, below "
+            f"{line.least_wave():.3g} it is doubtful",
+            soft_wrap=True,
+            markup=False,
+        )
 
 
 def _run(todo: Sweep, file: Path, folder: Path, pool: Pool, in_flight: int) -> tuple[dict[int, PointRecord], dict[str, str]]:

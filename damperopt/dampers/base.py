@@ -32,6 +32,10 @@ class Context:
         [K]; None: at the reference of the damper's numbers.
     current : Expr
         [A]; 0: none.
+    axle : Expr
+        Lever of the axle about the strut axis, the caster length [m].
+    wanted : Expr
+        Force against the stroke that a control law wants of the damper [N]; None: there is no law.
     outputs : mapping of str to Expr
         Of the gear, for dampers that are driven by a measurement.
     """
@@ -40,6 +44,8 @@ class Context:
     speed: Expr = 0
     temperature: Expr = None
     current: Expr = 0
+    axle: Expr = 0
+    wanted: Expr = None
     outputs: Mapping[str, Expr] = field(default_factory=dict)
 
 
@@ -66,6 +72,8 @@ class Damper(Record):
     motion of its own."""
     ROTARY: ClassVar[bool] = False
     """Whether it acts about the yaw axis: strokes are then angles, and forces torques."""
+    COMMANDED: ClassVar[bool] = False
+    """Whether a control law commands it, `Context.wanted`; beside other dampers an actuator does what the law wants."""
     VISCOUS: ClassVar[str] = ""
     """The design variable that uncertain damping multiplies; empty: none."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from importlib import import_module
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -36,25 +36,39 @@ class _Friction(Damper):
     breakout_force: ForceNumber | None = None
     """Sideways pull at which the wheel swivels, as builders measure it, such as 25 lbf at the axle [N]."""
     breakout_lever: Length | None = None
-    """Of that pull about the strut axis; at the axle, the caster length [m]."""
+    """Of that pull about the strut axis [m]; left out: it is at the axle, at the caster length of the gear."""
     load_lever: Distance = 0.0
     """r_f, by which the torque grows with the load, T_c = T_0 + r_f F_z: coefficient times radius of a thrust face [m]."""
     viscous_damping: TorsionalDamping = 0.0
     """c, beside the friction [N m s/rad]."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _as_builders_say(cls, data: Any) -> Any:
+        """``breakout: 25 lbf at the axle``, ``25 lbf at 0.11 m``, or a torque, as the keys that say the same."""
+        if not isinstance(data, dict) or "breakout" not in data:
+            return data
+        rest, text = {key: value for key, value in data.items() if key != "breakout"}, data["breakout"]
+        what, at, where = text.partition(" at ") if isinstance(text, str) else (text, "", "")
+        if not at:
+            return {**rest, "breakout_torque": what}
+        lever = {} if where.strip() == "the axle" else {"breakout_lever": where.strip()}
+        return {**rest, "breakout_force": what.strip(), **lever}
+
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        by_force = (self.breakout_force is not None, self.breakout_lever is not None)
-        if by_force != ((self.breakout_torque is None,) * 2):
-            raise refuse("", "incomplete or double breakout", "breakout_torque, or breakout_force with breakout_lever")
+        by_force, lever = self.breakout_force is not None, self.breakout_lever is not None
+        if by_force == (self.breakout_torque is not None) or (lever and not by_force):
+            ways = "breakout_torque, or breakout_force (with breakout_lever, or at the axle)"
+            raise refuse("", "incomplete or double breakout", ways)
         return self
 
-    def breakout(self, load: Expr) -> Expr:
-        """T_c at a vertical load [N m]."""
+    def breakout(self, context: Context) -> Expr:
+        """T_c at a vertical load, and with the axle where the gear has it [N m]."""
         at_rest = self.breakout_torque
-        if self.breakout_force is not None and self.breakout_lever is not None:
-            at_rest = self.breakout_force * self.breakout_lever
-        return at_rest + self.load_lever * load
+        if self.breakout_force is not None:
+            at_rest = self.breakout_force * (context.axle if self.breakout_lever is None else self.breakout_lever)
+        return at_rest + self.load_lever * context.load
 
     def leaves_out(self) -> tuple[str, ...]:
         """What the linear model of friction is."""
@@ -78,12 +92,12 @@ class FrictionDamper(_Friction):
         corners: Corners,
     ) -> Force:
         """T = c psi' + T_c sign(psi'); an exact simulation lets it stick."""
-        dry = self.breakout(context.load) * corners.sign("damper friction", rate, self.smoothing)
+        dry = self.breakout(context) * corners.sign("damper friction", rate, self.smoothing)
         return Force(self.viscous_damping * rate + dry, {}, {"friction_torque": dry})
 
     def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
         """c + 4 T_c/(pi omega X)."""
-        return 0.0, self.viscous_damping + 4 * self.breakout(context.load) / (math.pi * frequency * amplitude)
+        return 0.0, self.viscous_damping + 4 * self.breakout(context) / (math.pi * frequency * amplitude)
 
 
 class Dahl(_Friction):
@@ -114,13 +128,13 @@ class Dahl(_Friction):
         if isinstance(corners, Linear):
             forgotten = FORGOTTEN * (dry - sigma_0 * stroke)
         else:
-            forgotten = sigma_0 * dry * corners.magnitude(rate, self.smoothing) / self.breakout(context.load)
+            forgotten = sigma_0 * dry * corners.magnitude(rate, self.smoothing) / self.breakout(context)
         rates = {"dahl_torque": sigma_0 * rate - forgotten}
         return Force(self.viscous_damping * rate + dry, rates, {"friction_torque": dry})
 
     def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
         """2 T_c I_1(rho)/(X cosh(rho)) and 4 T_c/(pi omega X) (1 - tanh(rho)/rho), rho = sigma_0 X/T_c; numbers alone."""
-        T_c, X = self.breakout(context.load), amplitude
+        T_c, X = self.breakout(context), amplitude
         rho = self.presliding_stiffness * X / T_c
         # I_1 and cosh both grow as exp(rho)
         stiffness = 4 * T_c * import_module("scipy.special").i1e(rho) / (X * (1 + math.exp(-2 * rho)))

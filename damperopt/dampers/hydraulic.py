@@ -157,4 +157,6 @@ class Hydraulic(Oiled):
             words.append("compliance of oil column, rod and brackets in series with the damper (damper.compliance)")
         if self.oil is None:
             words.append("oil that is cold or hot (damper.oil)")
+        if self.charge_pressure is None:
+            words.append("cavitation of the oil (damper.charge_pressure)")
         return tuple(words)

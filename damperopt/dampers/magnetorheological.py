@@ -11,10 +11,11 @@ from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, symbol
-from ..expressions.corners import Corners, Linear
+from ..expressions.corners import Corners, Linear, Smooth
 from ..ports.sizing import Force, LimitEvent, Size, Sized
 from ..quantities.named import DesignVariable, Output, State
 from ..quantities.record import Density, Fraction, Length, Time
+from ..quantities.record import Force as ForceNumber
 from ..quantities.units import Quantity
 from ..strength.cylinder import bore, cylinder_mass, piston_area, rod_diameters, rod_length
 from .base import FORGOTTEN, Context, Damper
@@ -31,6 +32,7 @@ class _Magnetorheological(Damper):
     VARIABLES: ClassVar = (
         DesignVariable("c_lambda", "N s/m", r"$c_\lambda$", "damping of the damper without current", example="1e4 N s/m"),
     )
+    COMMANDED: ClassVar = True
     STATES: ClassVar[tuple[State, ...]] = (State("control_current", "A", "current", even=True),)
     OUTPUTS: ClassVar = (Output("yield_force", "N", "at the current that flows"),)
 
@@ -41,9 +43,13 @@ class _Magnetorheological(Damper):
     idle_current: Current = 0.0
     """i_0 that always flows [A]."""
     control_current: Current = 0.0
-    """i_1, the most that the rate of the stroke adds: i_1 v^2/(v^2 + v_1^2) [A]."""
+    """i_1, the most that is added: by the rate of the stroke i_1 v^2/(v^2 + v_1^2), or by a law (`control`) [A]."""
     control_rate: Annotated[float, Quantity("m/s", above=0, example="0.1 m/s")] = 0.1
     """v_1, at which it adds half of that [m/s]."""
+    switching_band: ForceNumber = 50.0
+    """F_b over which a law (`control`) switches the current on and off [N]."""
+    switching_smoothing: Annotated[float, Quantity("1", above=0, at_most=0.5)] = 0.002
+    """Width of the rounded corners of that in the smooth version, as a fraction of the band."""
     response_time: Time = 0.02
     """tau, lag of the current and the fluid [s]."""
     fluid_density: Density = 3000.0
@@ -55,10 +61,24 @@ class _Magnetorheological(Damper):
         """f_0 + f_1 (i_0 + added), with the current that control adds [N]."""
         return self.residual_yield + self.yield_per_ampere * (self.idle_current + added)
 
-    def _lagging(self, added: Expr, rate: Expr) -> Expr:
-        """tau i' = i_1 v^2/(v^2 + v_1^2) - i."""
-        wanted = self.control_current * rate**2 / (rate**2 + self.control_rate**2)
-        return (wanted - added) / self.response_time
+    def _lagging(self, added: Expr, rate: Expr, force: Expr, wanted: Expr, corners: Corners) -> Expr:
+        """tau i' = i_1 v^2/(v^2 + v_1^2) - i; with a law that wants a force, its share of i_1 in the place of the first."""
+        share = rate**2 / (rate**2 + self.control_rate**2) if wanted is None else self._clipped(force, wanted, corners)
+        return (self.control_current * share - added) / self.response_time
+
+    def _clipped(self, force: Expr, wanted: Expr, corners: Corners) -> Expr:
+        """1 where the force has the sign of what is wanted and is smaller, else 0; between them a band F_b of forces.
+
+        With f = clip(F/F_b, -1, 1) it is (F* f - |F|)/F_b, clipped to 0 .. 1; F_b to 0 is the clipped-optimal law of Dyke,
+        Spencer, Sain & Carlson, Smart Materials and Structures 5 (1996), as one that switches without chattering.
+        """
+        band, width = self.switching_band, self.switching_smoothing
+        side = force / band - corners.contact("law, force", force / band, 1, width)
+        lacking = wanted / band * side - corners.sign("law, side", force, width * band) * force / band
+        return self._share(lacking, corners) - self._share(0, corners if isinstance(corners, Smooth) else Linear())
+
+    def _share(self, lacking: Expr, corners: Corners) -> Expr:
+        return lacking - corners.contact("law, lacking", lacking - 0.5, 0.5, self.switching_smoothing)
 
     def peak_force(self, design: Mapping[str, Expr], rate: Expr) -> Expr:
         """Viscous force at the largest rate, and the yield force at the largest current."""
@@ -76,7 +96,7 @@ class _Magnetorheological(Damper):
 
     def leaves_out(self) -> tuple[str, ...]:
         """What the linear model of it does not hold."""
-        current = "the yield force, and the current that control adds: simulate has them (damper.control_current)"
+        current = "the yield force, and the current that rate or law adds: simulate has them (damper.control_current)"
         return (current, "saturation of the yield force over the current, and its fall with temperature")
 
 
@@ -100,7 +120,8 @@ class Bingham(_Magnetorheological):
         added = states["control_current"]
         top = self.yield_force(added)
         force = design["c_lambda"] * rate + top * corners.sign("damper friction", rate, self.smoothing)
-        return Force(force, {"control_current": self._lagging(added, rate)}, {"yield_force": top})
+        rates = {"control_current": self._lagging(added, rate, force, context.wanted, corners)}
+        return Force(force, rates, {"yield_force": top})
 
     def rate(
         self,
@@ -159,8 +180,9 @@ class BoucWen(_Magnetorheological):
             fast, size = corners.magnitude(rate, 1e-6 * self.control_rate), corners.magnitude(z, 1e-9)
             loading, reloading = (z, size) if self.sharpness == 1 else (z * size, z**2)
             turn = (rate - beta * fast * loading - (1 - beta) * rate * reloading) / x_y
-        rates = {"control_current": self._lagging(added, rate), "hysteresis": turn}
-        return Force(design["c_lambda"] * rate + top * z, rates, {"yield_force": top})
+        force = design["c_lambda"] * rate + top * z
+        rates = {"control_current": self._lagging(added, rate, force, context.wanted, corners), "hysteresis": turn}
+        return Force(force, rates, {"yield_force": top})
 
     def rate(
         self,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic.config import JsonDict
 
 from ..expressions.calculus import Expr, exp, log
-from ..quantities.record import Number, Record, refuse
+from ..quantities.record import Number, Pressure, Record, refuse
 from ..quantities.temperature import ZERO_CELSIUS, Temperature, TemperatureRange
 from ..quantities.units import Quantity
 from .base import Damper
@@ -122,6 +123,11 @@ class Oiled(Damper):
     damping_range: list[Number] | None = Field(None, examples=[[0.5, 2.0]], json_schema_extra=_TWO)
     """Least and largest factor on the damping at which the requirements hold, such as [0.5, 2]; comes before the oil's."""
 
+    charge_pressure: Pressure | None = None
+    """Of both chambers at rest, absolute, by which cavitation is judged [Pa]; left out: it is not looked at."""
+    vapour_pressure: Annotated[float, Quantity("Pa", at_least=0, example="1 kPa")] = 1e3
+    """Of the oil, absolute, below which it boils; typical [Pa]."""
+
     @model_validator(mode="after")
     def _uncertain(self) -> Self:
         found = self.damping_range
@@ -129,6 +135,16 @@ class Oiled(Damper):
             allowed = "two factors on the damping, the first below the second, with 1 among them or between them"
             raise refuse("damping_range", f"found {found}", allowed)
         return self
+
+    def swept(self, design: Mapping[str, Expr]) -> Expr | None:
+        """Area of the piston [m^2], or displacement of the vanes [m^3/rad]; None: what the working pressure asks of a force.
+
+        Parameters
+        ----------
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        """
+        return self.piston(design)
 
     def damping_factors(self) -> tuple[float, float]:
         """Ends of `damping_range`, or what the oil makes at the hot and the cold end of its range."""

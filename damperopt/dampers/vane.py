@@ -105,6 +105,10 @@ class Vane(Oiled):
         """2 beta D/sweep of two chambers of the volume D sweep, one under pressure and one relieved [N m/rad]."""
         return None if self.displacement is None else 2 * self.bulk_modulus * self.displacement / self.sweep
 
+    def swept(self, design: Mapping[str, Expr]) -> Expr | None:
+        """D, where it is given."""
+        return self.displacement
+
     def equivalent(self, design: Mapping[str, Expr], amplitude: Expr, frequency: Expr, context: Context) -> tuple[Expr, Expr]:
         """c + 8/(3 pi) c_2 omega X, without the oil in series."""
         c_2 = 0.0 if self.orifice is None else self.orifice.coefficient
@@ -136,7 +140,7 @@ class Vane(Oiled):
 
     def leaves_out(self) -> tuple[str, ...]:
         """The oil, where no displacement or temperature is given."""
-        words = ["cavitation where the relieved chamber runs empty"]
+        words = ["cavitation where the relieved chamber runs empty (damper.charge_pressure)"] * (self.charge_pressure is None)
         if self.displacement is None:
             words.append("compressibility of the oil (damper.displacement)")
         if self.oil is None:

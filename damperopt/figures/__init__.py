@@ -6,6 +6,8 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
+    "cycle_map": "cycles",
+    "cycles": "cycles",
     "decay": "motion",
     "mass_by_part": "design",
     "modes_before_after": "modes",
@@ -16,9 +18,12 @@ _HOME = {
     "save_each": "style",
     "styled": "style",
     "sweep_figure": "sweep",
+    "threshold": "cycles",
     "tornado": "design",
+    "roll": "motion",
     "trajectory": "motion",
     "tyre_over_load": "tyre",
+    "tyre_over_path": "tyre",
     "tyre_over_slip": "tyre",
 }
 """Module of each public function; that of a chart is `chart.chart`, that of a linkage `linkage.linkage`."""

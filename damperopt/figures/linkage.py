@@ -16,7 +16,7 @@ from .style import plain, styled
 __all__ = ["hinge_lines", "linkage"]
 
 MM = 1e3
-WIDTHS = {"link": 7.0, "support": 6.0, "hinge": 6.0, "damper": 5.0, "arm": 2.5}
+WIDTHS = {"link": 7.0, "support": 6.0, "beam": 6.0, "hinge": 6.0, "foot": 6.0, "damper": 5.0, "arm": 2.5}
 """The thinnest in front: from some side parts lie behind each other."""
 
 HINGE = "#888888"
@@ -32,7 +32,15 @@ VIEWS = (
 )
 """Title, coordinates along both axes of the figure, and their names."""
 
-COLOURS = {"link": "#4a4a4a", "arm": "#0b6e99", "hinge": "#3a7d44", "damper": "#c2571a", "support": "#7a5195"}
+COLOURS = {
+    "link": "#4a4a4a",
+    "arm": "#0b6e99",
+    "beam": "#3a7d44",
+    "hinge": "#3a7d44",
+    "foot": "#3a7d44",
+    "damper": "#c2571a",
+    "support": "#7a5195",
+}
 
 
 def linkage(layout: Layout | str, design: Mapping[str, float]) -> Any:
@@ -99,7 +107,7 @@ def hinge_lines(parts: Sequence[Member]) -> list[np.ndarray]:
     feet: dict[float, list[tuple[float, ...]]] = {}
     for part in parts:
         start = tuple(map(float, part.start))
-        if abs(start[0]) < TOUCHES and part.kind != "hinge":
+        if abs(start[0]) < TOUCHES and not part.is_beam:
             feet.setdefault(round(start[2], 9), []).append(start)
     ends = [np.array([min(at, key=lambda p: p[1]), max(at, key=lambda p: p[1])]) for at in feet.values()]
     return [line for line in ends if np.ptp(line[:, 1]) > TOUCHES]

@@ -7,12 +7,16 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..motion.history import Frozen
+from ..motion.roll import Roll
 from ..motion.trajectory import Motion, Trajectory
 from ..quantities.shown import axis_label, scale, written
 from ..results import DecayCheck
 from .style import COLOURS, plain, styled
 
-__all__ = ["decay", "trajectory"]
+__all__ = ["decay", "roll", "trajectory"]
+
+UNSTABLE = "#a11d33"
 
 PANELS = (
     ("Yaw angle", (("yaw_angle", ""),)),
@@ -63,6 +67,60 @@ def trajectory(record: Trajectory, motion: Motion, after: str = "") -> Any:
         figure.align_ylabels(rows[:, 0])
         words = motion.kind if not record.message else f"{motion.kind}: {plain(record.message)}"
         figure.suptitle(f"{written(record.speed, record.load)}: {words}" + (f"\n{plain(after)}" if after else ""), fontsize=10)
+        return figure
+
+
+def roll(record: Trajectory, found: Roll, frozen: Frozen, after: str = "") -> Any:
+    """Yaw and damper force through a history, above speed, load and stroke, and the spectral abscissa of the frozen gear.
+
+    Where that gear is unstable, or keeps less than its margin, all panels are shaded.
+
+    Parameters
+    ----------
+    record : Trajectory
+    found : Roll
+        What it shows.
+    frozen : Frozen
+        The gear with time held.
+    after : str
+        What set it off, for the title.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    force = next(name for name in ("damper_force", "damper_torque", "linkage_torque") if name in record.outputs)
+    names = ["yaw_angle", force, "speed", *(["strut_stroke"] if "strut_stroke" in record.outputs else [])]
+    with styled():
+        figure, axes = plt.subplots(len(names) + 1, sharex=True, figsize=(8, 1.5 + 1.5 * len(names)))
+        for axis, name in zip(axes, names, strict=False):
+            unit = record.units[name]
+            colour = COLOURS["lateral" if name == force else "torsional"]
+            axis.plot(record.time, scale(unit)[1] * record[name], lw=0.8, color=colour)
+            axis.set_ylabel(axis_label(name.capitalize().replace("_", " "), unit))
+        other = axes[2].twinx()
+        other.plot(record.time, record["vertical_load"] / 1e3, lw=0.8, color=COLOURS["lateral"])
+        other.set_ylabel("Load [kN]", color=COLOURS["lateral"])
+        other.spines["right"].set_visible(True)
+        other.grid(visible=False)
+        axes[2].set_ylabel("Speed [m/s]", color=COLOURS["torsional"])
+        for axis in (axes[2], other):
+            axis.set_ylim(bottom=0)
+        axes[-1].plot(frozen.time, frozen.abscissa, lw=1, color="#333333")
+        axes[-1].axhline(0, color="#333333", lw=0.8)
+        axes[-1].set(ylabel="Largest real\npart [1/s]", xlabel="Time [s]")
+        if found.margin:
+            axes[-1].axhline(-found.margin, color="#333333", lw=0.8, ls="--")
+        for axis in axes:
+            axis.margins(x=0)
+            for stretches, shade in ((found.below, 0.1), (found.unstable, 0.15)):
+                for stretch in stretches:
+                    axis.axvspan(*stretch.time, color=UNSTABLE, alpha=shade, lw=0)
+        figure.align_ylabels(axes)
+        shaded = "shaded: unstable" + (f" (lightly: margin below {found.margin:g} 1/s)" if found.margin else "")
+        words = f"stopped: {plain(record.message)}" if record.message else plain(record.along)
+        lines = [words, *map(plain, after.split(" and ")), f"{shaded}, with time held"]
+        figure.suptitle("\n".join(lines), fontsize=10)
         return figure
 
 

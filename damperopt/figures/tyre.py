@@ -9,9 +9,10 @@ import numpy as np
 
 from ..quantities.shown import axis_label, scale
 from ..tyres.curves import TyreCurves
+from ..tyres.path_response import RESPONSES
 from .style import plain, styled
 
-__all__ = ["tyre_over_load", "tyre_over_slip"]
+__all__ = ["tyre_over_load", "tyre_over_path", "tyre_over_slip"]
 
 LENGTHS = {"relaxation_length": "relaxation length", "half_contact_length": "half contact length", "pneumatic_trail": "trail"}
 SLOPES = {"cornering_stiffness": "Cornering stiffness", "aligning_stiffness": "Aligning stiffness"}
@@ -71,4 +72,51 @@ def tyre_over_load(record: TyreCurves) -> Any:
             axis.set_xlabel("Load of a wheel [kN]")
             axis.set_ylim(bottom=0)
         figure.suptitle(plain(record.name), fontsize=11)
+        return figure
+
+
+def tyre_over_path(record: TyreCurves) -> Any:
+    """Response of force and moment to a swivel over path frequency, and how far each contact line is from the exact one.
+
+    Parameters
+    ----------
+    record : TyreCurves
+        With a response.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    found = record.response
+    assert found is not None
+    names = list(RESPONSES)
+    with styled():
+        figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True)
+        colours = plt.get_cmap("tab10")(np.arange(len(found.lines)))
+        for (line, values), colour in zip(found.lines.items(), colours, strict=True):
+            exact = line == "memory"
+            look: dict[str, Any] = {"color": "black" if exact else colour, "lw": 2.4 if exact else 1.4, "label": line}
+            for column, name in enumerate(("F/theta", "M/theta")):
+                k = names.index(name)
+                axes[0, column].loglog(found.frequencies, scale(RESPONSES[name])[1] * np.abs(values[k]), **look)
+                if not exact:
+                    worst = found.errors(line)[k : k + 2].max(axis=0)
+                    axes[1, column].loglog(found.frequencies, 100 * worst, **look)
+        for column, words in enumerate(("Side force", "Aligning moment")):
+            unit = RESPONSES[("F/theta", "M/theta")[column]]
+            axes[0, column].set_ylabel(axis_label(f"{words} per swivel", unit))
+            axes[1, column].set_ylabel(f"{words}: off memory [%]")
+            axes[1, column].set_ylim(0.1, 1000)
+            axes[1, column].axhline(10, color="0.5", lw=0.8, ls="--")
+            axes[1, column].set_xlabel("Path frequency, 2 pi/wavelength [rad/m]")
+            for axis in axes[:, column]:
+                axis.margins(x=0)
+            product = float(found.frequencies[0] * found.contact_lengths[0])
+            turned = lambda x, p=product: p / np.maximum(x, 1e-12)  # noqa: E731  # its own inverse
+            above = axes[0, column].secondary_xaxis("top", functions=(turned, turned))
+            above.set_xlabel("Contact lengths per wave")
+            above.set_xticks([50, 16, 8, 4, 2], ["50", "16", "8", "4", "2"])
+            above.minorticks_off()
+        axes[0, 0].legend(title="Contact line", frameon=False, fontsize=8)
+        figure.suptitle(f"{plain(record.name)}, {found.load / 1e3:.4g} kN", fontsize=11)
         return figure

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
+
+from pydantic import Field, model_validator
 
 from ..expressions.calculus import Expr, cos, sin, tan
 from ..expressions.corners import Corners
@@ -13,8 +15,14 @@ from ..quantities.named import Output, State
 from ..quantities.record import Angle, Coordinate, Inertia, Record
 from ..quantities.units import Quantity
 from .friction import Friction
+from .strut import ShockStrut
 
 __all__ = ["Gear", "Names"]
+
+EXAMPLE = {
+    "gas": {"pressure": "1.2 MPa", "area": "0.012 m^2", "volume": "0.005 m^3", "exponent": 1.1},
+    "travel": "0.3 m",
+}
 
 Names = Mapping[str, Expr]
 """States by name."""
@@ -40,6 +48,8 @@ class Gear(Record):
     """(kind, key): a study of that kind which gives the key means this kind."""
     MIRRORS: ClassVar[bool] = True
     """Whether a mirrored motion is a motion too."""
+    STROKES: ClassVar[bool] = True
+    """Whether its numbers follow the stroke of a shock strut."""
 
     kind: str
     yaw_inertia: Inertia
@@ -52,6 +62,14 @@ class Gear(Record):
     """R_w, loaded [m]."""
     friction: Friction | None = None
     """Dry friction of the strut in yaw."""
+    strut: Annotated[ShockStrut | None, Field(examples=[EXAMPLE])] = None
+    """Shock strut that comes in under the load; left out: its stroke is frozen, and all numbers hold as they are given."""
+
+    @model_validator(mode="after")
+    def _strut_fits(self) -> Self:
+        if self.strut is not None:
+            self.strut.refuse_beside(self)
+        return self
 
     def wheels(self, x: Names, speed: Expr, load: Expr) -> tuple[Wheel, ...]:
         """The wheels on the ground.
@@ -88,6 +106,19 @@ class Gear(Record):
         e, phi, R_w = self.caster_length, self.rake_angle, self.wheel_radius
         return e * cos(phi) + (R_w + e * sin(phi)) * tan(phi)
 
+    def stroke(self, load: Expr) -> Expr:
+        """Of the shock strut at a vertical load on the gear [N], from fully out [m]; 0 without one."""
+        return 0 if self.strut is None else self.strut.at_load(load)
+
+    def at(self, load: Expr, stroke: Expr, rate: Expr = 0) -> Self:
+        """The gear with its numbers as they are at a load [N], a stroke of the strut [m] and a rate of it [m/s]."""
+        return self if self.strut is None else self.model_copy(update=self.strut.changed(self, load, stroke, rate))
+
+    @property
+    def load_powers(self) -> tuple[int, ...] | None:
+        """Powers of F_z with the strut, whose stroke is no polynomial."""
+        return self.LOAD_POWERS if self.strut is None else None
+
     @property
     def order(self) -> int:
         """Of the linear gear with a string tyre of one state, as the field counts it."""
@@ -106,4 +137,8 @@ class Gear(Record):
         friction = "dry friction of the strut (gear.friction)"
         if self.friction is not None:
             friction = "the dry friction of the strut: simulate has it"
-        return (friction, "motion of the shock strut: its stroke is frozen")
+        strut = "motion of the shock strut: its stroke is frozen (gear.strut)"
+        if self.strut is not None:
+            strut = "motion of the shock strut: at each load it stands in balance, at rest (quasi-static)"
+        drag = getattr(self, "drag", None)  # of kinds that have it in their equations
+        return (friction, *(() if drag is None else drag.leaves_out()), strut)

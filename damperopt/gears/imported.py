@@ -1,7 +1,8 @@
 """The gear whose structure comes as matrices, from a finite-element model or a test: any number of coordinates.
 
-M q'' + (C + G V) q' + (K + K_g F_z) q = B_F F_y - B_M (M_z + kappa theta'/V) + H_d' T, with the lateral position of the contact
-centre eta = H_eta q and the swivel of the wheel theta = H_theta q. Small motions of the structure; the tyre stays nonlinear.
+M q'' + (C + G V) q' + (K + K_g F_z + K_D D) q = B_F F_y - B_M (M_z + kappa theta'/V - D w) + H_d' T, with the lateral position
+of the contact centre eta = H_eta q and the swivel of the wheel theta = H_theta q. Small motions of the structure; the tyre
+stays nonlinear.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
 from ..quantities.record import Coordinate, Inertia, Name, Record, refuse
 from .base import Gear, Names
+from .drag import Dragged, deflected
 from .friction import friction_torque
 from .matrices import read, refuse_wrong
 from .yaw import Yaw
@@ -64,6 +66,8 @@ class Structure(Record):
     """Gyroscopic (n, n), antisymmetric, per speed."""
     K_g: Matrix | None = None
     """Stiffness that the vertical load makes (n, n), per newton."""
+    K_D: Matrix | None = None
+    """Stiffness that a drag in the plane of the wheel makes (n, n), per newton; needed where the gear has a drag."""
     B_F: Row | None = None
     """Generalised force of a unit side force (n,); left out: H_eta, right where the strut has no rake."""
     B_M: Row | None = None
@@ -103,14 +107,17 @@ class Imported(Gear):
         Output("lateral_displacement", "m", "of the contact centre by the structure, -H_eta q"),
     )
     STATES: ClassVar[tuple[State, ...]] = Yaw.STATES
+    STROKES: ClassVar[bool] = False
 
     kind: Literal["imported"]
     yaw_inertia: Inertia | None = None  # type: ignore[assignment]  # always filled in from the matrices
     """I_z, 1/(H_theta M^-1 H_theta'): follows from the matrices [kg m^2]."""
     caster_length: Coordinate | None = None  # type: ignore[assignment]  # as above
     """Lever of the side force on the yaw: follows from the matrices [m]."""
+    drag: Dragged = None
+    """Steady braking and rolling drag, by K_D of the structure; left out: the wheel rolls freely."""
     structure: Structure
-    """M, C, K, H_eta, H_theta, optionally G, K_g, B_F, B_M, H_d, names; or ``file``: a .npz, or a folder of .csv."""
+    """M, C, K, H_eta, H_theta, optionally G, K_g, K_D, B_F, B_M, H_d, names; or ``file``: a .npz, or a folder of .csv."""
 
     @model_validator(mode="before")
     @classmethod
@@ -130,6 +137,12 @@ class Imported(Gear):
                 raise refuse(key, f"found {given} beside matrices that say {value:g}", "to leave it out")
         return {**data, **follows, "structure": structure}
 
+    @model_validator(mode="after")
+    def _drag_has_a_matrix(self) -> Self:
+        if self.drag is not None and self.structure.K_D is None:
+            raise refuse("structure.K_D", "missing key", "the stiffness per newton of drag, which gear.drag needs")
+        return self
+
     def states(self) -> tuple[State, ...]:
         """Yaw, which is H_theta q, in the place of the coordinate with the largest part in it; then what does not yaw."""
         at = _Coordinates(self.structure)
@@ -147,17 +160,20 @@ class Imported(Gear):
         return (Wheel(speed, swivel, swivel_rate, lateral, lateral_rate, self.caster_length, load),)
 
     def rates(self, x: Names, contacts: Sequence[Contact], damper: Torque, yaw_torque: Expr, corners: Corners) -> Motion:
-        """M p'' = -(C + G V) p' - (K + K_g F_z) p + B_F F_y - B_M M_z + H_d' T + H_theta' (T_yaw - T_friction)."""
+        """M p'' = -(C + G V) p' - (K + K_g F_z + K_D D) p + B_F F_y - B_M (M_z - D w) + H_d' T + H_theta' (T_yaw - T_dry)."""
         at, (contact,) = _Coordinates(self.structure), contacts
         wheel, (p, p_t) = contact.wheel, self._coordinates(x)
         assert wheel is not None
+        turned_on, pulled = deflected(self.drag, contact, self.wheel_radius), 0
+        if self.drag is not None:
+            pulled = self.drag.braking(self.wheel_radius) + self.drag.rolling(wheel.load)
         rubs = friction_torque(self.friction, wheel.swivel_rate, corners)
         drives = []
         for i in range(len(p)):
-            force = at.B_F[i] * contact.side_force - at.B_M[i] * contact.aligning_moment
+            force = at.B_F[i] * contact.side_force - at.B_M[i] * (contact.aligning_moment - turned_on)
             force += at.H_d[i] * damper.torque + at.H_theta[i] * yaw_torque
             force -= _dot(at.C[i], p_t) + _dot(at.K[i], p)
-            force -= _dot(at.G[i], p_t) * wheel.speed + _dot(at.K_g[i], p) * wheel.load
+            force -= _dot(at.G[i], p_t) * wheel.speed + _dot(at.K_g[i], p) * wheel.load + _dot(at.K_D[i], p) * pulled
             drives.append(force)
         free = [_dot(row, drives) for row in at.flexibility]
         slowed = [a - _dot(row, at.H_theta) * rubs for row, a in zip(at.flexibility, free, strict=True)]
@@ -230,6 +246,10 @@ class _Coordinates:
     @cached_property
     def K_g(self) -> np.ndarray:
         return self._square(self._given.K_g)
+
+    @cached_property
+    def K_D(self) -> np.ndarray:
+        return self._square(self._given.K_D)
 
     @cached_property
     def H_eta(self) -> np.ndarray:

@@ -15,8 +15,8 @@ from ..quantities.units import Quantity
 __all__ = ["NEEDED", "OPTIONAL", "read", "refuse_wrong"]
 
 NEEDED = ("M", "C", "K", "H_eta", "H_theta")
-OPTIONAL = ("G", "K_g", "B_F", "B_M", "H_d", "names")
-SQUARE = ("M", "C", "K", "G", "K_g")
+OPTIONAL = ("G", "K_g", "K_D", "B_F", "B_M", "H_d", "names")
+SQUARE = ("M", "C", "K", "G", "K_g", "K_D")
 
 UNITS = {"length": "m", "force": "N", "time": "s"}
 
@@ -33,7 +33,7 @@ def read(path: Path) -> dict[str, Any]:
     Parameters
     ----------
     path : Path
-        A .npz file with M, C, K, H_eta, H_theta, optionally G, K_g, B_F, B_M, H_d, names, and the text ``units``, such as
+        A .npz file with M, C, K, H_eta, H_theta, optionally G, K_g, K_D, B_F, B_M, H_d, names, and the text ``units``, such as
         ``length=mm, force=N, time=s``; or a folder with a .csv file for each, with these units in its first line, behind a #.
 
     Returns
@@ -51,7 +51,7 @@ def read(path: Path) -> dict[str, Any]:
             raise refuse("file", f"{name} of {path.name} is not finite everywhere", "finite numbers")
     L, F, T = _factors(path, units)
     energy = F * L
-    factor = {"M": energy * T**2, "C": energy * T, "K": energy, "G": F * T**2, "K_g": L, "H_eta": L, "B_F": L}
+    factor = {"M": energy * T**2, "C": energy * T, "K": energy, "G": F * T**2, "K_g": L, "K_D": L, "H_eta": L, "B_F": L}
     found: dict[str, Any] = {
         name: (factor.get(name, 1.0) * value).tolist() for name, value in arrays.items() if name != "names"
     }

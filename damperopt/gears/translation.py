@@ -21,6 +21,7 @@ from ..quantities.named import Output, State
 from ..quantities.record import Coordinate, Record, Stiffness, refuse
 from ..quantities.units import Quantity
 from .base import Gear, Names
+from .drag import pushes
 from .spinning_wheel import gyroscopic
 from .yaw import Yaw
 from .yaw_bending import YawBending
@@ -88,7 +89,8 @@ class YawTranslation(Yaw):
         wheel, w, w_t = contact.wheel, x["translation"], x["translation_rate"]
         assert wheel is not None
         push = -strut.stiffness * w - strut.damping * w_t
-        push += -contact.side_force * cos(wheel.swivel) * cos(self.rake_angle)
+        aside = sum(pushes(self.drag, wheel, self.wheel_radius))
+        push += (aside - contact.side_force * cos(wheel.swivel)) * cos(self.rake_angle)
         P = 0 if self.swivelling is None else self.swivelling.mass * self.swivelling.offset
         psi, psi_t = x["yaw_angle"], x["yaw_rate"]
         yaw_tt, w_tt = _accelerations(

@@ -11,7 +11,7 @@ from ..expressions.corners import Corners
 from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
-from ..quantities.record import Distance, Length, Record, Stiffness, TorsionalDamping
+from ..quantities.record import Distance, Length, Pressure, Record, Stiffness, TorsionalDamping
 from ..quantities.units import Quantity
 from .base import Gear, Names
 from .spinning_wheel import gyroscopic
@@ -34,6 +34,12 @@ class Axle(Record):
     """K_z of one tyre, by which they resist roll [N/m]."""
     axle_roll: bool = True
     """Whether the axle rolls with the bending of the strut, so that the tyres resist it as 2 K_z t_w^2."""
+    left_share: Annotated[float, Quantity("1", above=0, below=1, example="0.6")] | None = None
+    """Part of the load on the left wheel, such as beside a soft tyre; left out: half of it [1]."""
+    left_pressure: Pressure | None = None
+    """Of the left tyre; left out: that of the tyre [Pa]."""
+    right_pressure: Pressure | None = None
+    """Of the right tyre [Pa]."""
 
     @property
     def deflection_stiffness(self) -> Expr:
@@ -49,8 +55,9 @@ class Axle(Record):
 class Twin(YawBending):
     """As yaw_bending, with two wheels on a common axle: they cannot turn without slipping, which damps yaw.
 
-    Each tyre carries half the load and has a string of its own. Terms of second order in the track are left out, so that both
-    strings obey one equation. The longitudinal force of either tyre lags behind its slip as a string of length sigma_x.
+    Each tyre carries half the load, or its share, and has a string and, if one is given, a pressure of its own. Terms of second
+    order in the track are left out, so that both strings are moved alike. The longitudinal force of either tyre lags behind its
+    slip as a string of length sigma_x.
     """
 
     STATES: ClassVar[tuple[State, ...]] = (*YawBending.STATES, State("fore_aft_deflection", "m", "fore-aft"))
@@ -66,8 +73,11 @@ class Twin(YawBending):
     def wheels(self, x: Names, speed: Expr, load: Expr) -> tuple[Wheel, ...]:
         """Two, left and right, each with half the load; the right one comes forward in a positive yaw."""
         (both,) = super().wheels(x, speed, load)
-        forward = self.axle.half_track * both.swivel_rate
-        return tuple(replace(both, load=load / 2, forward_rate=(-forward, forward)[i], index=i) for i in (0, 1))
+        axle, forward = self.axle, self.axle.half_track * both.swivel_rate
+        loads = (load / 2, load / 2) if axle.left_share is None else (axle.left_share * load, (1 - axle.left_share) * load)
+        of_left = {"load": loads[0], "pressure": axle.left_pressure, "forward_rate": -forward, "index": 0}
+        of_right = {"load": loads[1], "pressure": axle.right_pressure, "forward_rate": forward, "index": 1}
+        return replace(both, **of_left), replace(both, **of_right)
 
     def rates(self, x: Names, contacts: Sequence[Contact], damper: Torque, yaw_torque: Expr, corners: Corners) -> Motion:
         """Both tyres together as one, and the moment of their opposite longitudinal forces.
@@ -79,8 +89,12 @@ class Twin(YawBending):
         one, other = contacts
         wheel = one.wheel
         assert wheel is not None
-        total = replace(wheel, load=2 * wheel.load)
-        both = Contact((), one.side_force + other.side_force, one.aligning_moment + other.aligning_moment, wheel=total)
+        assert other.wheel is not None
+        total = replace(wheel, load=wheel.load + other.wheel.load)
+        force, moment = one.side_force + other.side_force, one.aligning_moment + other.aligning_moment
+        known = one.deflection is not None and other.deflection is not None
+        deflection = (one.deflection + other.deflection) / 2 if known else None  # each under half of the drag
+        both = Contact((), force, moment, deflection=deflection, wheel=total)
         scrub = 2 * axle.deflection_stiffness * axle.half_track * u
         motion = super().rates(x, (both,), damper, yaw_torque - scrub * cos(self.rake_angle), corners)
         bending = motion.rates["bending_rate"] - axle.roll_stiffness * delta / self.lateral.inertia
@@ -95,7 +109,8 @@ class Twin(YawBending):
     def leaves_out(self) -> tuple[str, ...]:
         """Gyroscopic moments, where no inertia of a wheel is given, and what makes the two tyres different."""
         words = (
-            "tyres of different pressure or braking, and the limit of grip where side and longitudinal force meet (gear.axle)"
+            "what turns an axle whose wheels are braked or loaded differently, and the limit of grip where side and "
+            "longitudinal force meet (gear.axle)"
         )
         return (words, *(super().leaves_out() if self.wheel_polar_inertia is None else Gear.leaves_out(self)))
 

@@ -13,6 +13,7 @@ from ..quantities.named import Output, State
 from ..quantities.record import Record, TorsionalDamping
 from ..quantities.units import Quantity
 from .base import Gear, Names
+from .drag import Dragged, deflected
 from .friction import friction_torque
 
 __all__ = ["LateralMode", "PolarInertia", "Yaw"]
@@ -52,6 +53,9 @@ class Yaw(Gear):
     wheel_polar_inertia: PolarInertia | None = None
     """I_p of the spinning parts about the axle; without bending it has no effect on yaw [kg m^2]."""
 
+    drag: Dragged = None
+    """Steady braking and rolling drag; left out: the wheel rolls freely."""
+
     def wheels(self, x: Names, speed: Expr, load: Expr) -> tuple[Wheel, ...]:
         """One wheel behind the strut axis."""
         psi, psi_t, phi, e_eff = x["yaw_angle"], x["yaw_rate"], self.rake_angle, self.lever()
@@ -67,6 +71,7 @@ class Yaw(Gear):
         psi_t, phi, e_eff, theta = x["yaw_rate"], self.rake_angle, wheel.trail, wheel.swivel
         M_load = wheel.load * sin(phi) * e_eff * sin(theta)
         torque = damper.torque - e_eff * contact.side_force - contact.aligning_moment + M_load + yaw_torque
+        torque += deflected(self.drag, contact, self.wheel_radius) * cos(phi)
         psi_tt = (torque - friction_torque(self.friction, psi_t, corners)) / self.yaw_inertia
         outputs = {"linkage_torque": damper.torque, "torque_without_friction": torque}
         return Motion({"yaw_angle": psi_t, "yaw_rate": psi_tt}, outputs)

@@ -12,6 +12,7 @@ from ..ports.motion import Motion, Torque
 from ..ports.wheel import Contact, Wheel
 from ..quantities.named import Output, State
 from .base import Gear, Names
+from .drag import pushes
 from .yaw import LateralMode, Yaw
 
 __all__ = ["YawBending"]
@@ -50,7 +51,9 @@ class YawBending(Yaw):
         assert wheel is not None
         delta, delta_t, l_g, theta = x["bending_angle"], x["bending_rate"], strut.height, wheel.swivel
         bending = -strut.stiffness * delta - strut.damping * delta_t
-        bending += -l_g * contact.side_force * cos(theta) * cos(self.rake_angle) * cos(delta)
+        at_ground, at_axle = pushes(self.drag, wheel, self.wheel_radius)
+        sideways = l_g * (at_ground - contact.side_force * cos(theta)) + (l_g - self.wheel_radius) * at_axle
+        bending += sideways * cos(self.rake_angle) * cos(delta)
         bending += wheel.load * wheel.trail * sin(theta)
         rates = {"bending_angle": delta_t, "bending_rate": bending / strut.inertia}
         return Motion({**yaw.rates, **rates}, {**yaw.outputs, "lateral_displacement": l_g * sin(delta)})

@@ -8,8 +8,9 @@ from typing import Any, ClassVar, Literal
 from ..expressions.calculus import Expr, sin, sqrt
 from ..ports.linkage import Compliant, Linkage, Member, Point
 from ..quantities.named import DesignVariable
-from .base import TorqueLinks, from_lengths, reach_and_height, viscous
-from .elastic import TAPERED_MASS, leg_length, tapered_stiffness, two_legs_stiffness
+from ..strength.sections import area
+from .base import TorqueLinks, from_lengths, hinge_beam, reach_and_height, viscous
+from .elastic import TAPERED_MASS, hinge_beam_stiffness, in_series, leg_length, tapered_stiffness, two_legs_stiffness
 from .spatial import closed_loop
 
 __all__ = ["Arreaza"]
@@ -24,17 +25,21 @@ class Arreaza(TorqueLinks):
     I_SUPPORT: ClassVar = DesignVariable(
         "I_support", "m^4", "$I_{sup}$", "second moment of area at the root of the support", example="1e-6 m^4"
     )
+    I_FOOT: ClassVar = DesignVariable(
+        "I_foot", "m^4", "$I_{foot}$", "second moment of area of the beam between the feet of the support", example="4e-7 m^4"
+    )
     ELASTIC: ClassVar = ("link", "support")
-    SIZES: ClassVar = (*TorqueLinks.SIZES, A_SUPPORT, I_SUPPORT)
+    SIZES: ClassVar = (*TorqueLinks.SIZES, A_SUPPORT, I_SUPPORT, I_FOOT)
     MIRRORS: ClassVar = False  # in space the damper stands on one side; its stroke is odd to the fourth power of psi only
 
     topology: Literal["arreaza"]
 
     def sizes(self) -> tuple[DesignVariable, ...]:
-        """Of the torque link and of the support."""
+        """Of the torque link and of the support, and of the beams that they stand on."""
         if not self.is_sized("support"):
             return super().sizes()
-        return (*super().sizes(), self.A_SUPPORT if self.support.form == "a_frame" else self.I_SUPPORT)
+        own = (self.A_SUPPORT, self.I_FOOT) if self.support.form == "a_frame" else (self.I_SUPPORT,)
+        return (*super().sizes(), *own)
 
     def planar(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> tuple[Linkage, tuple[Expr, Expr]]:
         """Arm along the reach, damper across it; thesis (3-40) .. (3-45)."""
@@ -69,9 +74,14 @@ class Arreaza(TorqueLinks):
         if self.support.form == "a_frame":
             width = self.links.width(L)
             legs = leg_length(L, b + width / 2), leg_length(L, b - width / 2)
-            stiffness = two_legs_stiffness(E, design["A_support"], legs, width)
-        elif self.support.root == "hinge_line":
-            stiffness = tapered_stiffness(E, design["I_support"], L)
+            I_foot = design["I_foot"]
+            lengths = L, width, self.links.overhang(width / 2)
+            beam = hinge_beam_stiffness(E, I_foot, area(study.mass.hinge_section, I_foot), *lengths, b)
+            stiffness = in_series((two_legs_stiffness(E, design["A_support"], legs, width), beam))
+        elif self.support.root == "hinge_line":  # its root hangs on a beam out to b, which it bends and pulls
+            I_root = design["I_support"]
+            beam = E / self.links.overhang(b) / (L**2 / I_root + 1 / area(study.mass.support_section, I_root))
+            stiffness = in_series((tapered_stiffness(E, I_root, L), beam))
         else:  # the force along y has the lever ell; it bends an arm of length R
             R = sqrt(ell**2 + b**2)
             stiffness = tapered_stiffness(E, design["I_support"], R) * (R / ell) ** 2
@@ -112,11 +122,18 @@ class Arreaza(TorqueLinks):
             length, lever = (sqrt(ell**2 + b**2), ell) if on_strut else (L, L)
             start = (0.0, 0.0, 0.0) if on_strut else (0.0, -b, h)
             root: dict[str, Any] = {"inertia": design["I_support"], "taper": TAPERED_MASS, "variable": "I_support"}
-            return (Member("support", start=start, length=length, bending_length=lever, **root, **rest),)
+            arm = Member("support", start=start, length=length, bending_length=lever, **root, **rest)
+            if on_strut:
+                return (arm,)
+            beam: dict[str, Any] = {**rest, "end": start, "inertia": design["I_support"], "variable": "I_support"}
+            beam |= {"length": self.links.overhang(b), "bending_length": L, "thrust": 1}
+            return (Member("support, hinge line", start=(0.0, 0.0, h), **beam), arm)
         width = self.links.width(L)
         members = []
         for name, foot in (("far", width / 2), ("near", -width / 2)):  # from the damper's end; the far one is the longer
             leg = leg_length(L, b + foot)
             more: dict[str, Any] = {"area": design["A_support"], "share": leg / width, "length": leg, "variable": "A_support"}
             members.append(Member(f"support, {name} leg", start=(0.0, foot, h), **more, **rest))
-        return tuple(members)
+        lengths, of_foot = (L, width, self.links.overhang(width / 2)), {"kind": "foot", "load": "damper_force"}
+        beneath = hinge_beam("hinge of the support", "support hinge", h, design["I_foot"], "I_foot", lengths, b, **of_foot)
+        return (*members, beneath)

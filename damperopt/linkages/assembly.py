@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from ..dampers.base import Damper
+from ..dampers.control import Control, Controlled
 from ..errors import ConfigError
 from ..expressions.calculus import Expr
 from ..ports.linkage import Compliant
@@ -15,7 +16,7 @@ from ..quantities.kinds import home_of, kinds, tags_of, union_of
 from ..quantities.named import DesignVariable
 from ..quantities.record import refuse
 from .base import Layout
-from .joints import EndStop, Freeplay, Joints
+from .joints import EndStop, Freeplay, Joints, RotaryEndStop, RotaryFreeplay, RotaryJoints
 
 __all__ = ["Assembly", "assemblies", "assembly", "assembly_type", "dampers", "layouts"]
 
@@ -74,18 +75,25 @@ class Assembly:
         return tuple(part for kind in parts for part in kind.elastic(self, design, study, stroke))
 
     @property
-    def play(self) -> Freeplay | None:
-        """Of the apex joint."""
+    def play(self) -> Freeplay | RotaryFreeplay | None:
+        """Of the apex joint, or in front of what stands about the yaw axis."""
         return getattr(self, "freeplay", None)
 
     @property
-    def stop(self) -> EndStop | None:
+    def stop(self) -> EndStop | RotaryEndStop | None:
         """Of the damper's stroke."""
         return getattr(self, "end_stop", None)
 
+    @property
+    def actuator(self) -> Control | None:
+        """Control that acts by a torque of its own; None: there is none, or it commands a current."""
+        return None if self.KIND.COMMANDED else getattr(self, "control", None)
+
     def leaves_out(self) -> tuple[str, ...]:
         """What layout, damper and joints do not hold, in words."""
-        parts: list[Any] = [part for part in (self.LAYOUT, self.KIND, Joints) if isinstance(self, part)]
+        parts: list[Any] = [
+            part for part in (self.LAYOUT, self.KIND, Joints, RotaryJoints, Controlled) if isinstance(self, part)
+        ]
         return tuple(words for part in parts if hasattr(part, "leaves_out") for words in part.leaves_out(self))
 
 
@@ -100,24 +108,24 @@ def assembly(layout: type[Layout], damper: type[Damper]) -> type[Any]:
     Returns
     -------
     type
-        With the fields of both, and those of the joints where there is a linkage.
+        With the fields of both, of control, and of play and stop.
 
     Raises
     ------
     ConfigError
         If a key belongs to both.
     """
-    fields, joints = (set(layout.model_fields), set(damper.model_fields)), set(Joints.model_fields)
+    fields, joints = (set(layout.model_fields), set(damper.model_fields)), {*Joints.model_fields, *Controlled.model_fields}
     if taken := sorted((fields[0] | fields[1]) & joints):
         owner = layout if taken[0] in fields[0] else damper
-        raise ConfigError(f"{home_of(owner)} declares '{taken[0]}', which is a key of the joints; allowed: other names")
+        raise ConfigError(f"{home_of(owner)} declares '{taken[0]}', which is a key of joints or control; allowed: other names")
     both = fields[0] & fields[1]
     names = [v.name for v in (*damper.VARIABLES, *layout.VARIABLES)]
     twice = sorted(both | {name for name in names if names.count(name) > 1})
     if twice:
         words = f"{home_of(layout)} and {home_of(damper)} both declare '{twice[0]}'"
         raise ConfigError(f"{words}; allowed: each key once")
-    bases = (Assembly, layout, damper) if layout.ROTARY else (Assembly, layout, damper, Joints)
+    bases = (Assembly, layout, damper, RotaryJoints if layout.ROTARY else Joints, Controlled)
     facts = {
         "LAYOUT": layout,
         "KIND": damper,

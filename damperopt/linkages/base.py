@@ -23,9 +23,19 @@ from ..ports.sizing import LimitEvent
 from ..quantities.named import DesignVariable
 from ..quantities.record import Record
 from ..strength.members import member_mass
-from .elastic import TAPERED_MASS, LinkForm, SupportForm, leg_length, tapered_stiffness, two_legs_stiffness
+from ..strength.sections import area
+from .elastic import (
+    TAPERED_MASS,
+    LinkForm,
+    SupportForm,
+    hinge_beam_stiffness,
+    in_series,
+    leg_length,
+    tapered_stiffness,
+    two_legs_stiffness,
+)
 
-__all__ = ["Layout", "TorqueLinks", "from_lengths", "reach_and_height", "straight", "viscous"]
+__all__ = ["Layout", "TorqueLinks", "from_lengths", "hinge_beam", "reach_and_height", "straight", "viscous"]
 
 
 class Layout(Record):
@@ -68,6 +78,20 @@ class Layout(Record):
             Of the shock strut [m]: it brings the lugs together by as much.
         """
         raise NotImplementedError  # every layout says it
+
+    def linkage_of(self, study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+        """The linkage of a study, for layouts whose levers hang on sections too.
+
+        Parameters
+        ----------
+        study : Study
+            Floats or symbols: material, mass model.
+        design : mapping of str to Expr
+            Design variables by name [SI].
+        stroke : Expr
+            Of the shock strut [m].
+        """
+        return self.linkage(design, study.material.youngs_modulus, stroke)
 
     def members(self, design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Member, ...]:
         """Members at rest: one list to draw, to weigh and to check.
@@ -121,6 +145,17 @@ class Layout(Record):
                 parts[member.part] = parts[member.part] + mass if member.part in parts else mass
         return parts
 
+    def springs(self, event: LimitEvent, study: Any) -> dict[str, Expr]:
+        """Stress of springs that are sized by the energy of the limit event, at that event, by part [Pa].
+
+        Parameters
+        ----------
+        event : LimitEvent
+        study : Study
+            Floats or symbols; they are of the material of the damper.
+        """
+        return {}
+
 
 class TorqueLinks(Layout):
     """Layouts with two lugs at the strut, 2 L cos(gamma) apart, and an apex at L sin(gamma) from its axis."""
@@ -137,8 +172,15 @@ class TorqueLinks(Layout):
     I_LINK: ClassVar = DesignVariable(
         "I_link", "m^4", "$I_{link}$", "second moment of area at the root of a torque link", example="1e-6 m^4"
     )
+    I_HINGE: ClassVar = DesignVariable(
+        "I_hinge",
+        "m^4",
+        "$I_{hinge}$",
+        "second moment of area of the beam between the feet of a torque link",
+        example="4e-7 m^4",
+    )
     ELASTIC: ClassVar[tuple[str, ...]] = ("link",)
-    SIZES: ClassVar[tuple[DesignVariable, ...]] = (A_LINK, I_LINK)
+    SIZES: ClassVar[tuple[DesignVariable, ...]] = (A_LINK, I_LINK, I_HINGE)
     SIDE: ClassVar = DesignVariable("b", "m", "$b$", "side distance of arm or damper root from the axis", example="0.2 m")
     ARM: ClassVar = DesignVariable("I_arm", "m^4", "$I_{arm}$", "second moment of area of the arm", example="3.4e-6 m^4")
 
@@ -148,10 +190,10 @@ class TorqueLinks(Layout):
     """Form of what holds the outer end of the damper, in layouts that have such a part."""
 
     def sizes(self) -> tuple[DesignVariable, ...]:
-        """Of the torque links."""
+        """Of the torque links, and of the beams that their feet stand on."""
         if not self.is_sized("link"):
             return ()
-        return (self.A_LINK,) if self.links.form == "a_frame" else (self.I_LINK,)
+        return (self.A_LINK, self.I_HINGE) if self.links.form == "a_frame" else (self.I_LINK,)
 
     def elastic(self, design: Mapping[str, Expr], study: Any, stroke: Expr = 0) -> tuple[Compliant, ...]:
         """Every torque link of the layout, laterally at the apex."""
@@ -161,9 +203,12 @@ class TorqueLinks(Layout):
         if self.links.form == "cantilever":
             stiffness = tapered_stiffness(E, design["I_link"], L)
         else:
-            width = self.links.width(L)
+            width, I_hinge = self.links.width(L), design["I_hinge"]
             leg = leg_length(L, width / 2)
-            stiffness = two_legs_stiffness(E, design["A_link"], (leg, leg), width)
+            legs = two_legs_stiffness(E, design["A_link"], (leg, leg), width)
+            overhang = self.links.overhang(width / 2)
+            beam = hinge_beam_stiffness(E, I_hinge, area(study.mass.hinge_section, I_hinge), L, width, overhang)
+            stiffness = in_series((legs, beam))
         return tuple(Compliant("link", stiffness, in_front=True) for _ in range(self.LINKS))
 
     def link_members(self, name: str, design: Mapping[str, Expr], hinge: Expr, apex: Point) -> tuple[Member, ...]:
@@ -178,10 +223,16 @@ class TorqueLinks(Layout):
         leg = leg_length(L, width / 2)
         more = {"area": design["A_link"], "share": leg / width, "length": leg, "variable": "A_link"}
         feet = {"left": -width / 2, "right": width / 2}
-        return tuple(
+        legs = tuple(
             Member(f"{name}, {side} leg", part, "link", (0.0, y, hinge), apex, "link_section", **more)
             for side, y in feet.items()
         )
+        lengths = L, width, self.links.overhang(width / 2)
+        return (*legs, hinge_beam(f"hinge of the {name}", "link hinges", hinge, design["I_hinge"], "I_hinge", lengths))
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What holds the hinges."""
+        return ("give of the strut and of lugs where hinges and roots are held",) if self.is_sized("link") else ()
 
     def linkage(self, design: Mapping[str, Expr], youngs_modulus: Expr, stroke: Expr = 0) -> Linkage:
         """By the level of the geometry."""
@@ -203,6 +254,40 @@ class TorqueLinks(Layout):
     def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr) -> Linkage:
         """The linkage in space."""
         raise NotImplementedError  # every layout says it
+
+
+def hinge_beam(
+    name: str,
+    part: str,
+    height: Expr,
+    inertia: Expr,
+    variable: str,
+    lengths: tuple[Expr, Expr, Expr],
+    across: Expr = 0,
+    **more: Any,
+) -> Member:
+    """Beam between the feet of two legs, as `hinge_beam_stiffness` has it; what is inside the strut is no part of it.
+
+    Parameters
+    ----------
+    name, part, variable : str
+        As of a `Member`.
+    height : Expr
+        Of the hinge line [m].
+    inertia : Expr
+        [m^4]
+    lengths : tuple of Expr
+        L, width, overhang, as of `hinge_beam_stiffness` [m].
+    across : Expr
+        [m]
+    more : Any
+        Of the `Member`, such as its load.
+    """
+    L, width, overhang = lengths
+    start, end = (0.0, -width / 2, height), (0.0, width / 2, height)
+    own: dict[str, Any] = {"kind": "hinge", "section": "hinge_section", "inertia": inertia, "variable": variable}
+    forces = {"length": 2 * overhang, "bending_length": L * overhang / width, "thrust": across / width + 1 / 2}
+    return Member(name, part, start=start, end=end, **{**own, **forces, **more})
 
 
 def reach_and_height(design: Mapping[str, Expr], stroke: Expr = 0) -> tuple[Expr, Expr]:

@@ -9,7 +9,7 @@ from ..expressions.calculus import Expr, sin
 from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
 from ..quantities.named import DesignVariable
-from ..strength.members import belleville_mass
+from ..strength.members import belleville_mass, belleville_stress
 from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
@@ -59,3 +59,7 @@ class Boeing(TorqueLinks):
     def masses(self, design: Mapping[str, Expr], event: LimitEvent, study: Any) -> dict[str, Expr]:
         """Links and the Belleville stack."""
         return {**super().masses(design, event, study), "spring": belleville_mass(event, study)}
+
+    def springs(self, event: LimitEvent, study: Any) -> dict[str, Expr]:
+        """The Belleville stack."""
+        return {"spring": belleville_stress(event, study)}

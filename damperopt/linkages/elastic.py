@@ -8,6 +8,10 @@ Two legs of length l1, l2 from a hinge of width w carry a force across the apex 
 
     1/k = (l1^3 + l2^3)/(E A w^2).
 
+Their feet pull and push the ends of the beam of the hinge line with F L/w. It is held where it leaves the strut, a from its
+ends (w/2 where the strut has no width), bends there under F L a/w, and the apex moves by 2 F L^2 a^3/(3 E I w^2) more. Across,
+the feet load its ends along themselves.
+
 A cantilever of uniform stress in similar sections has the tip stiffness (5/3) E I_root/L^3 and weighs 3/5 of a prismatic one.
 """
 
@@ -30,6 +34,7 @@ __all__ = [
     "LinkForm",
     "SupportForm",
     "elastic_linkage",
+    "hinge_beam_stiffness",
     "in_series",
     "leg_length",
     "tapered_stiffness",
@@ -39,6 +44,9 @@ __all__ = [
 TAPERED_MASS = 3 / 5
 """Mass of a cantilever of uniform stress in similar sections over that of the prismatic one with its root section."""
 
+
+LEAST_OVERHANG = 0.003
+"""Of a hinge as wide as the strut [m]; a wider one gains less than that."""
 
 WORDS = ("sized", "rigid")
 """That stand for every part."""
@@ -99,6 +107,8 @@ class LinkForm(Record):
     """Between the legs at the hinge [m]; left out: half the length of the link, the width of links that stand at 14 deg."""
     hinge_width_max: Length | None = None
     """Most that the strut has room for [m]."""
+    strut_width: Length | None = None
+    """Of the strut where it holds the beams of the hinge lines [m]; left out: they are held on its axis, on the safe side."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -110,6 +120,13 @@ class LinkForm(Record):
     def width(self, L: Expr) -> Expr:
         """w_h of a link of length L [m]."""
         return L / 2 if self.hinge_width is None else self.hinge_width
+
+    def overhang(self, half: Expr) -> Expr:
+        """Of a beam with its end `half` [m] from the axis, beside the strut, and never quite nothing [m]."""
+        if self.strut_width is None:
+            return half
+        beside = half - self.strut_width / 2
+        return (beside + sqrt(beside**2 + 4 * LEAST_OVERHANG**2)) / 2  # smooth for the optimiser
 
 
 class SupportForm(Record):
@@ -147,6 +164,31 @@ def two_legs_stiffness(E: Expr, area: Expr, legs: tuple[Expr, Expr], width: Expr
     return E * area * width**2 / (legs[0] ** 3 + legs[1] ** 3)
 
 
+def hinge_beam_stiffness(E: Expr, inertia: Expr, area: Expr, L: Expr, width: Expr, overhang: Expr, across: Expr = 0) -> Expr:
+    """Stiffness across the apex of two legs on the beam between their feet [N/m].
+
+    Parameters
+    ----------
+    E, inertia, area : Expr
+        Young's modulus [Pa], second moment [m^4] and area [m^2] of the beam.
+    L : Expr
+        Distance of the apex from the beam [m].
+    width : Expr
+        Between the feet [m].
+    overhang : Expr
+        Of the beam beside the strut, to each side [m].
+    across : Expr
+        Of the apex beside the middle of the beam [m].
+
+    Examples
+    --------
+    >>> round(hinge_beam_stiffness(207e9, 4e-7, 1.3e-3, 0.56, 0.28, 0.14) / 1e6, 3)  # 12 E I/(L^2 w), and what is pushed
+    11.282
+    """
+    bent, pushed = 2 * L**2 * overhang**3 / (3 * inertia * width**2), (2 * across**2 / width**2 + 1 / 2) * overhang / area
+    return E / (bent + pushed)
+
+
 def tapered_stiffness(E: Expr, inertia: Expr, L: Expr) -> Expr:
     """Tip stiffness of a cantilever of uniform stress in similar sections [N/m]; `inertia` at its root [m^4]."""
     return 5 / 3 * E * inertia / L**3
@@ -159,7 +201,7 @@ def in_series(stiffnesses: Sequence[Expr]) -> Expr:
     return 1 / sum(1 / k for k in stiffnesses)
 
 
-def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) -> Linkage:
+def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0, torsion: Expr = None) -> Linkage:
     """The linkage of a study with the compliance of its parts.
 
     Parameters
@@ -170,17 +212,21 @@ def elastic_linkage(study: Any, design: Mapping[str, Expr], stroke: Expr = 0) ->
         Design variables by name [SI].
     stroke : Expr
         Of the shock strut [m].
+    torsion : Expr or None
+        Of piston and cylinder at this stroke [N m/rad], in the place of the study's; beside a rotary damper.
 
     Returns
     -------
     Linkage
     """
     damper = study.damper
-    link = damper.linkage(design, study.material.youngs_modulus, stroke)
+    link = damper.linkage_of(study, design, stroke)
     if damper.ROTARY:
-        return replace(link, series=damper.series(design))
+        stiffness = link.stiffness if torsion is None else torsion
+        return replace(link, stiffness=stiffness, series=damper.series(design))
     parts = [part for part in damper.elastic(design, study, stroke) if damper.compliance.is_sized(part.part)]
     given, own = damper.given_compliance(), damper.series(design)
+    given = given if torsion is None else {**given, "torsion": torsion}
     for name, value in given.items():
         if name == "torsion":
             parts.append(Compliant(name, value / link.reach**2, in_front=True))

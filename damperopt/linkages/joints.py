@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from ..expressions.calculus import Expr
@@ -10,7 +11,7 @@ from ..quantities.record import Length, Record, SeriesStiffness, Stiffness
 from ..quantities.units import Quantity
 from .elastic import Compliance
 
-__all__ = ["EndStop", "Freeplay", "Joints", "beyond_gap", "stop_force"]
+__all__ = ["EndStop", "Freeplay", "Joints", "RotaryEndStop", "RotaryFreeplay", "RotaryJoints", "beyond_gap", "stop_force"]
 
 _Smoothing = Annotated[float, Quantity("1", above=0, at_most=0.5)]
 
@@ -61,14 +62,56 @@ class Joints(Record):
         return tuple(words)
 
 
-def beyond_gap(freeplay: Freeplay, reach: Expr, corners: Corners, angle: Expr) -> tuple[Expr, Expr]:
-    """Angle beyond the play of an apex at `reach` [m], and its slope; [rad]."""
+_Clearance = Annotated[float, Quantity("rad", above=0, below=1, example="0.5 deg")]
+
+
+class RotaryFreeplay(Record):
+    """Play between the gear and what stands about the yaw axis: it turns freely by `gap` to either side."""
+
+    gap: _Clearance
+    """To one side [rad]."""
+    smoothing: _Smoothing = 0.02
+    """Width of the rounded corner of the smooth version, as a fraction of the gap."""
+
+
+class RotaryEndStop(Record):
+    """Stop at +-`stroke` from rest; without `stiffness` the model ends there."""
+
+    stroke: _Clearance
+    """To one side [rad]."""
+    stiffness: Annotated[float, Quantity("N m/rad", above=0, example="1 MN m/rad")] | None = None
+    """Of the contact [N m/rad]."""
+    smoothing: _Smoothing = 0.002
+    """Width of the rounded corner of the smooth version, as a fraction of the stroke."""
+
+
+class RotaryJoints(Record):
+    """Keys of a study's damper that belong to play and stop about the yaw axis."""
+
+    freeplay: RotaryFreeplay | None = None
+    """Play in front of spring and damper."""
+    end_stop: RotaryEndStop | None = None
+    """Stop of the damper's angle."""
+
+    def leaves_out(self) -> tuple[str, ...]:
+        """What of play and stop only a simulation of large motion holds."""
+        words = []
+        if self.freeplay is not None:
+            gap = math.degrees(self.freeplay.gap)
+            words.append(f"the freeplay of {gap:g} deg, taken as closed: simulate shows its limit cycle")
+        if self.end_stop is not None:
+            words.append(f"the end stop at {math.degrees(self.end_stop.stroke):g} deg, which small motions do not meet")
+        return tuple(words)
+
+
+def beyond_gap(freeplay: Freeplay | RotaryFreeplay, reach: Expr, corners: Corners, angle: Expr) -> tuple[Expr, Expr]:
+    """Angle beyond the play of an apex at `reach` [m] (1 about the yaw axis), and its slope; [rad]."""
     half_width = freeplay.gap / reach
     return corners.gap("freeplay", angle, half_width, freeplay.smoothing * half_width)
 
 
-def stop_force(stop: EndStop | None, corners: Corners, stroke: Expr) -> Expr:
-    """Force of the stop [N]; 0 without a stop, or with one at which the model ends."""
+def stop_force(stop: EndStop | RotaryEndStop | None, corners: Corners, stroke: Expr) -> Expr:
+    """Force of the stop [N], or torque [N m]; 0 without a stop, or with one at which the model ends."""
     if stop is None or stop.stiffness is None:
         return 0
     return stop.stiffness * corners.contact("end stop", stroke, stop.stroke, stop.smoothing * stop.stroke)

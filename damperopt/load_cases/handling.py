@@ -1,4 +1,4 @@
-"""Ground handling: braking, turning, pivoting, towing (14 CFR 25.493 to 25.509)."""
+"""Ground handling: braking, turning, pivoting, towing, a flat tyre (14 CFR 25.493 to 25.511)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from .base import FRICTION, Context, LoadCase, Loads, trail_left
 
 __all__ = [
     "BrakedRoll",
+    "FlatTyre",
     "NoseSteering",
     "NoseYaw",
     "Pivoting",
@@ -195,6 +196,29 @@ class Towing(LoadCase):
         force = self.share * towing_force(context.aircraft_weight)
         side, drag = force * sin(self.angle), force * cos(self.angle)
         return Loads(context.static, side, drag, absolute(context.e_eff), acts_at="tow fitting and static ground line")
+
+
+class FlatTyre(LoadCase):
+    """One of two tyres is flat: the other has the drag of braking that it has beside a sound one; half the side of a turn."""
+
+    RULE: ClassVar[str] = "14 CFR 25.511(e)"
+    READ: ClassVar[str] = "faraim.org (2019)"
+
+    kind: Literal["flat_tyre"]
+    side: Fraction = 0.25
+    """Side force over F_z, 50 % of the side load factor of a turn [1]."""
+    drag: Fraction = FRICTION / 2
+    """Drag over F_z at the inflated tyre, its half of a braked roll; 40 % of the drag load factor would be less [1]."""
+
+    def missing(self, context: Context) -> tuple[str, ...]:
+        """A second wheel."""
+        return () if context.wheels == 2 else ("two wheels",)
+
+    def forces(self, context: Context) -> Loads:
+        """F_z is not less than at 1 g; the drag is that of one wheel, and of a gear with brakes."""
+        lever, braked = absolute(context.e_eff) + trail_left(self.side, self.drag) * context.trail, context.gear == "main"
+        drag = self.drag * context.static if braked else 0.0
+        return Loads(context.static, self.side * context.static, drag, lever, context.half_track)
 
 
 def towing_force(weight: Expr) -> Expr:

@@ -42,6 +42,9 @@ SETTLED = 1e-2
 MORE_CYCLES = 2
 """Cycles that are looked at beyond those counted."""
 
+HIGH = 0.5
+"""Peaks of the decay ratio below this part of the largest are not refined."""
+
 DIFFERENCE = 1e-4
 """Relative step of the differences with respect to the numbers of a study."""
 
@@ -171,7 +174,7 @@ class DecayAnalysis:
             yaw = np.abs(motion.state("yaw_angle"))
             nothing = np.zeros(len(values) if gradient else 0)
             return DecayPoint(speed, load, DIVERGED if yaw[-1] > yaw[0] else 1.0, nothing, motion.time[-1], peaks, peak_slopes)
-        slopes = motion.log_slopes(answer.last) - motion.log_slopes(answer.first)
+        slopes = motion.log_slopes(answer.last) - motion.log_slopes(answer.first) if gradient else np.zeros(0)
         if gradient and answer.last == latest:
             slopes += motion.log_rate(latest) * self._latest_slopes(values, speed, load, data)
         return DecayPoint(speed, load, answer.ratio, slopes, answer.last, peaks, peak_slopes)
@@ -366,7 +369,7 @@ class DecayAnalysis:
             left, right = max(i - 1, 0), min(i + 1, count - 1)
             if heights[i] < max(heights[left], heights[right]):
                 continue
-            if not refined or count == 1:
+            if not refined or count == 1 or heights[i] < HIGH * max(heights):
                 found.append(point)
                 continue
             best = minimize_scalar(

@@ -29,6 +29,10 @@ IDAS_FLOOR, LEAST_IDAS = 3e-12, 1e-12
 """Relative tolerance below which IDAS no longer finds a first step, with algebraic unknowns and without."""
 
 
+FLAGS = ["-O1", "-march=native"]
+"""Of the compiler: -O3 takes as much longer as it gains over some hundred motions with derivatives."""
+
+
 @cache
 def has_compiler() -> bool:
     """Whether a C compiler is at hand, as just-in-time compilation needs."""
@@ -78,6 +82,8 @@ class Integrator:
         Integrate dx/d ln(design) too.
     compiled : bool or None
         Translate the model with gcc; None: where gcc is found and the engine profits.
+    clock : SX or None
+        Symbol among the data that is the time, from `start` of a call on [s].
 
     Raises
     ------
@@ -94,6 +100,7 @@ class Integrator:
         tolerance: float = 1e-8,
         sensitivities: bool = False,
         compiled: bool | None = None,
+        clock: ca.SX | None = None,
     ):
         self.steps, self.engine = steps, engine
         model = dae if engine == "idas" else eliminate(dae)
@@ -108,6 +115,8 @@ class Integrator:
             model.design, model.speed, model.load, duration, start, torque, unbalance, wheel_rate, model.data
         )
         x, z, ode, alg = _with_sensitivities(model) if self._d else (model.x, model.z, model.ode, model.alg)
+        if clock is not None:
+            ode, alg = (ca.substitute(e, clock, start + duration * time) for e in (ode, alg))
         problem = {"x": x, "p": parameters, "t": time}
         problem["ode"] = ca.cse(duration * ca.substitute(ode, model.yaw_torque, external))
         if self._m:
@@ -233,7 +242,7 @@ def _compiled(engine: str, equations: str, grid: tuple[float, ...], options: tup
     function = ca.Function.deserialize(equations)
     symbols = function.sx_in()
     problem = dict(zip(function.name_in() + function.name_out(), symbols + function.call(symbols), strict=True))
-    files = {"cleanup": False, "flags": ["-O3", "-march=native"], "verbose": False}  # removed with their folder
+    files = {"cleanup": False, "flags": FLAGS, "verbose": False}  # removed with their folder
     jit = {"jit": True, "jit_cleanup": False, "compiler": "shell", "jit_options": files}
     with tempfile.TemporaryDirectory(prefix="damperopt-") as folder, contextlib.chdir(folder):
         return ca.integrator("motion", engine, problem, 0, list(grid), dict(options) | jit)

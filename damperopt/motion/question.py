@@ -97,7 +97,9 @@ def valid_part(values: np.ndarray, names: Sequence[str], study: Study) -> tuple[
     limits += [(name, slip_range, slip) for name in names if name.startswith("slip_angle")]  # of every wheel
     stop = study.damper.stop
     if stop is not None and stop.stiffness is None:
-        limits.append(("damper_stroke", stop.stroke, f"the damper meets its stop at {stop.stroke * 1e3:.4g} mm"))
+        rotary = study.damper.ROTARY
+        where = f"{math.degrees(stop.stroke):.4g} deg" if rotary else f"{stop.stroke * 1e3:.4g} mm"
+        limits.append(("damper_angle" if rotary else "damper_stroke", stop.stroke, f"the damper meets its stop at {where}"))
     first, message = values.shape[1], ""
     for name, limit, words in limits:
         beyond = np.flatnonzero(~(np.abs(values[names.index(name)]) <= limit))
@@ -137,8 +139,8 @@ def posed(
     for name, value, unit in (("speed", speed, "m/s"), ("load", load, "N"), ("duration", duration, "s")):
         if not 0 < value < np.inf:
             raise ConfigError(f"{name}: found {value}; allowed: a positive number in {unit}")
-    if words := study.beyond_tyre(load):
-        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that the tyre has data for")
+    if words := study.beyond_data(load):
+        raise ConfigError(f"load: {load / 1e3:.6g} kN {words}; allowed: loads that tyre and strut have data for")
     try:
         disturbance = Disturbance.model_validate(disturbance)
     except ValidationError as error:

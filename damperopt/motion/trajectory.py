@@ -59,6 +59,8 @@ class Trajectory:
         Frequency [Hz] at which the gear is driven; 0: by nothing.
     units : mapping of str to str
         SI unit of the time and of every state and output, as the components declare them.
+    along : str
+        The history that speed and load follow, in words; they are outputs then, and `speed`, `load` those at the start.
     """
 
     speed: float
@@ -71,6 +73,7 @@ class Trajectory:
     engine: str
     forcing: float = 0.0
     units: Mapping[str, str] = field(default_factory=dict)
+    along: str = ""
 
     def __getitem__(self, name: str) -> np.ndarray:
         """State or output by name."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..quantities.temperature import ZERO_CELSIUS
-from ..results import ConstraintResult, DesignResult, LocalOptimum, Relaxation, StartResult
+from ..results import ConstraintResult, DesignResult, LocalOptimum, OperatingPoint, Relaxation, StartResult
 from ..study.components import unit_of_name
 from ..study.study import Study
 from .exchange import EnvelopeSolution
@@ -24,17 +24,43 @@ __all__ = [
     "not_checked",
     "nothing_yet",
     "start_result",
+    "worst_of",
 ]
 
 SAME_MASS = 1e-4
 """Starts whose masses agree to this relative difference are counted as one local optimum."""
 
 
+def worst_of(best: EnvelopeSolution) -> OperatingPoint:
+    """Where the spectral abscissa is largest; of a gear with an actuator while it is on."""
+    return next(point for point in best.worst if point.damping > 0)
+
+
+def _fail_safe(problem: DesignProblem, best: EnvelopeSolution) -> ConstraintResult:
+    """The margin with the actuator off."""
+    assert problem.fail_safe is not None
+    off, margin = next(point for point in best.worst if point.damping < 0), problem.study.fail_safe_margin
+    abscissa, name = off.abscissa - problem.fail_safe.less, "requirements.fail_safe_margin"
+    price = float(best.solution.gradient.data[problem.data_names.index(name)]) if name in problem.data_names else 0.0
+    return ConstraintResult(
+        name="fail_safe_margin",
+        kind="stability",
+        value=abscissa,
+        limit=0 - margin,
+        sense="<=",
+        unit="1/s",
+        active=abscissa > -margin - 10 * problem.study.solver.margin_reserve,
+        multiplier=price,
+        shadow_price=-price,
+        relaxed_by=(name, "envelope.speed", "envelope.vertical_load"),
+    )
+
+
 def constraint_results(
     problem: DesignProblem, best: EnvelopeSolution, factors: np.ndarray | None = None
 ) -> tuple[ConstraintResult, ...]:
     """Every constraint at the optimum, with what it costs; `factors` as `DesignProblem.mass` takes them."""
-    study, solution, worst = problem.study, best.solution, best.worst[0]
+    study, solution, worst = problem.study, best.solution, worst_of(best)
     margin = study.required.stability_margin
     price = float(solution.gradient.data[problem.data_names.index("requirements.stability_margin")])
     results = [
@@ -51,6 +77,8 @@ def constraint_results(
             relaxed_by=("requirements.stability_margin", "envelope.speed", "envelope.vertical_load"),
         )
     ]
+    if problem.fail_safe is not None:
+        results.append(_fail_safe(problem, best))
     if best.decay:
         required = study.required.decay
         assert required is not None

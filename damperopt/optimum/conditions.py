@@ -19,7 +19,7 @@ REAL = 1e-9
 """Imaginary part over magnitude below which a root is real, or a sum of two roots is."""
 
 WEIGHT_FLOOR = 1e-6
-"""Least sum of two roots over the rate that divides a weight."""
+"""Least sum of two roots over the rate that divides a weight, or the difference of the two."""
 
 
 @dataclass(frozen=True)
@@ -149,11 +149,17 @@ def _multiply(p: list[Any], q: list[Any]) -> list[Any]:
 
 
 def _factors(roots: np.ndarray, rate: float) -> list[float]:
-    """[b, c/rate^2, ..., r/rate] of real factors: conjugate pairs, then neighbouring real roots; r is the fastest."""
+    """[b, c/rate^2, ..., r/rate] of real factors: conjugate pairs, then real roots by two; r is the one left over.
+
+    Real roots that are about to meet and part as a conjugate pair must have one factor, or there is no way on from there.
+    """
     real = np.abs(roots.imag) <= REAL * (1 + np.abs(roots))
-    fast_to_slow = sorted(roots[real].real)
-    single = [fast_to_slow.pop(0)] if len(fast_to_slow) % 2 else []
     pairs = [(-2 * s.real, abs(s) ** 2) for s in roots[~real] if s.imag > 0]
-    pairs += [(-(s + t), s * t) for s, t in zip(fast_to_slow[::2], fast_to_slow[1::2], strict=True)]
+    single = np.sort(roots[real].real)
+    while single.size > 1:
+        near = int(np.argmin(np.diff(single) / (np.abs(single[:-1] + single[1:]) + WEIGHT_FLOOR * rate)))
+        s, t = single[near : near + 2]
+        pairs.append((-(s + t), s * t))
+        single = np.delete(single, [near, near + 1])
     ordered = sorted(pairs, key=lambda pair: pair[1])
     return [number for b, c in ordered for number in (b, c / rate**2)] + [-s / rate for s in single]

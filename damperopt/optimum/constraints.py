@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from ..expressions.calculus import cos, log
-from ..linkages.base import TorqueLinks
+from ..linkages.base import TorqueLinks, reach_and_height
 from ..objectives import RELAXED, SizedLayout
 from ..ports.linkage import Linkage, Member
 from ..ports.sizing import LimitEvent
@@ -59,7 +59,7 @@ class Constraint:
         return -excess if self.at_least else excess
 
 
-def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[Constraint]:
+def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout, softness: Any = 1) -> list[Constraint]:
     """Stress and fatigue of the bending arm, the damper's own sizes, and the least working stroke.
 
     Parameters
@@ -69,13 +69,17 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
     design : mapping
         Design variables by name.
     sized : SizedLayout
+        With the shock strut fully out, where a torque makes the largest forces.
+    softness : Expr
+        Stroke of the damper under a torque with the shock strut furthest in, over that with it fully out.
 
     Returns
     -------
     list of Constraint
     """
     required = study.requirements
-    blocks = [c for m in study.damper.members(design) if m.kind == "arm" for c in _arm(study, m, sized.event)]
+    bending = [member for member in study.damper.members(design) if member.kind in ("arm", "beam")]
+    blocks = [c for member in bending for c in _arm(study, member, sized.event)]
     for size in sized.sizes:
         for name, (least, relaxed) in size.least.items():
             blocks.append(Constraint(name, size.symbol, least, True, size.unit, relaxed, ratio=True))
@@ -84,7 +88,7 @@ def strength(study: Any, design: Mapping[str, Any], sized: SizedLayout) -> list[
         least_stroke = required.stroke_ratio * required.apex_clearance
         relaxed = ("requirements.stroke_ratio", "requirements.apex_clearance")
         stroke = sized.event.stroke if sized.event.service_stroke is None else sized.event.service_stroke
-        blocks.append(Constraint("working_stroke", stroke, least_stroke, True, "m", relaxed, ratio=True))
+        blocks.append(Constraint("working_stroke", softness * stroke, least_stroke, True, "m", relaxed, ratio=True))
     return [replace(block, kind="strength") for block in blocks]
 
 
@@ -123,7 +127,7 @@ def _elastic_arm(study: Any, member: Member, event: LimitEvent, stress: Any) -> 
 
 
 def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: SizedLayout) -> list[Constraint]:
-    """Lengths that the gear and its bay allow.
+    """Lengths that the gear and its bay allow, with the shock strut fully out and fully in.
 
     Parameters
     ----------
@@ -140,18 +144,22 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     """
     if study.damper.ROTARY:  # nothing reaches out
         return []
-    required, model = study.requirements, study.mass
-    reach, keys = linkage.reach, ("requirements.lug_distance", "requirements.reach")
+    required, model, reach, stroke = study.requirements, study.mass, linkage.reach, 0
+    keys = "requirements.lug_distance", "requirements.reach"
+    links = isinstance(study.damper, TorqueLinks)
+    if links and study.gear.strut is not None:
+        stroke = study.gear.strut.longest
+    furthest = reach_and_height(design, stroke)[0] if links else reach
     blocks = [
         Constraint("reach_min", reach, required.reach.min, True, "m", (f"{keys[1]}.min",)),
-        Constraint("reach_max", reach, required.reach.max, False, "m", (f"{keys[1]}.max",)),
+        Constraint("reach_max", furthest, required.reach.max, False, "m", (f"{keys[1]}.max",)),
     ]
-    if isinstance(study.damper, TorqueLinks):
+    if links:
         height = design["L"] * cos(design["gamma"])
-        lugs, clearance = 2 * height, height + model.lower_lug_height - study.gear.wheel_radius
+        lugs, clearance = 2 * height, height - stroke / 2 + model.lower_lug_height - study.gear.wheel_radius
         above = ("requirements.tyre_clearance", "mass.lower_lug_height")
         blocks = [
-            Constraint("lug_distance_min", lugs, required.lug_distance.min, True, "m", (f"{keys[0]}.min",)),
+            Constraint("lug_distance_min", lugs - stroke, required.lug_distance.min, True, "m", (f"{keys[0]}.min",)),
             Constraint("lug_distance_max", lugs, required.lug_distance.max, False, "m", (f"{keys[0]}.max",)),
             *blocks,
             Constraint("tyre_clearance", clearance, required.tyre_clearance, True, "m", above),
@@ -164,7 +172,11 @@ def geometry(study: Any, design: Mapping[str, Any], linkage: Linkage, sized: Siz
     stop = study.damper.stop
     if study.damper.has_sized_parts() and stop is not None:  # no part of the limit torque may rest on it: it is not sized
         longer = ("damper.end_stop.stroke",)
-        blocks.append(Constraint("end_stop", stop.stroke, sized.event.stroke, True, "m", longer, ratio=True))
+        blocks.append(
+            Constraint(
+                "end_stop", stop.stroke, sized.event.stroke, True, "rad" if study.damper.ROTARY else "m", longer, ratio=True
+            )
+        )
     most = study.damper.links.hinge_width_max if isinstance(study.damper, TorqueLinks) else None
     if study.damper.has_sized_parts() and most is not None:
         width = study.damper.links.width(design["L"])

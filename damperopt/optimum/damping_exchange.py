@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import minimize_scalar
 
+from ..stability.worst import top_of, tops_of
 from ..stability.yaw_mode import yaw_mode, yaw_modes
 from .cuts import Cut, Place, about, cut_before, held_with
 from .problem import DesignProblem
@@ -24,6 +24,9 @@ SPEEDS = 40
 
 NEAR = 1.3
 """Dips of the damping ratio below this multiple of the least are held from the start."""
+
+REFINED = 2.0
+"""Dips are refined where the first look shows less than this multiple of the least, or of what is required."""
 
 LEARNING_STEP = 1e-5
 """Step below which the difference of two gradients shows their rounding and no curvature."""
@@ -65,27 +68,23 @@ def least_damping(problem: DesignProblem, design: Mapping[str, float]) -> list[D
 
 
 def _dips(problem: DesignProblem, design: Mapping[str, float]) -> list[DampingPoint]:
-    gear, envelope = problem.model.at(design), problem.study.envelope
+    gear, envelope, required = problem.model.at(design), problem.study.envelope, problem.study.required.damping_ratio or 0.0
     low, high, found = envelope.speed.min, envelope.speed.max, list[DampingPoint]()
-
-    def ratio(speed: float, load: float) -> float:
-        s = yaw_modes(gear, speed, load)[0]
-        return 1.0 if np.isnan(s) else float(-s.real / abs(s))
-
+    speeds = np.unique(np.clip(np.geomspace(low, high, SPEEDS), low, high))
     for load in envelope.loads:
-        speeds = np.unique(np.clip(np.geomspace(low, high, SPEEDS), low, high))
-        heights = [ratio(float(V), load) for V in speeds]
-        for i, V in enumerate(speeds):
-            left, right = max(i - 1, 0), min(i + 1, len(speeds) - 1)
-            if heights[i] > min(heights[left], heights[right]):
-                continue
-            point = DampingPoint(float(V), load, heights[i])
-            if left < right:
-                bounds = (speeds[left], speeds[right])
-                at = lambda V, load=load: ratio(float(V), load)  # noqa: E731
-                best = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-6 * high, "maxiter": 20})
-                point = min(point, DampingPoint(float(best.x), load, float(best.fun)), key=lambda p: p.ratio)
-            found.append(point)
+
+        def undamped(V: np.ndarray, load: float = load) -> np.ndarray:
+            s = yaw_modes(gear, V, load)
+            return np.where(np.isnan(s), -1.0, s.real / np.abs(s))
+
+        heights = undamped(speeds)
+        for i in tops_of(heights):
+            left, right = speeds[max(i - 1, 0)], speeds[min(i + 1, len(speeds) - 1)]
+            speed, ratio = float(speeds[i]), -float(heights[i])
+            if left < right and ratio <= REFINED * max(-float(heights.max()), required):
+                speed = top_of(undamped, left, right)
+                ratio = -float(undamped(np.array([speed]))[0])
+            found.append(DampingPoint(speed, load, ratio))
     return found
 
 

@@ -51,10 +51,15 @@ class EnvelopeSolution:
 
 
 def first_points(solver: NlpSolver) -> list[tuple[float, ...]]:
-    """Both ends and the geometric middle of the speed range, at every load (or both ends of a load range) and damping's end."""
+    """Both ends and the geometric middle of the speed range, at every load (or both ends of a load range) and damping's end.
+
+    With an actuator, at each of them with and without it.
+    """
     envelope = solver.problem.study.envelope
     low, high = envelope.speed.min, envelope.speed.max
     factors = dict.fromkeys(solver.problem.study.damper.damping_factors())
+    if solver.problem.fail_safe is not None:
+        factors |= dict.fromkeys(-factor for factor in factors)
     return [(V, F, c) for c in factors for F in envelope.loads for V in dict.fromkeys((low, (low * high) ** 0.5, high))]
 
 
@@ -114,4 +119,4 @@ def missed_points(
 
 
 def _close(point: OperatingPoint, used: tuple[float, ...]) -> bool:
-    return all(abs(own - other) <= SAME_POINT * other for own, other in zip(point.place, (*used, 1.0), strict=False))
+    return all(abs(own - other) <= SAME_POINT * abs(other) for own, other in zip(point.place, (*used, 1.0), strict=False))

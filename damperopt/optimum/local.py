@@ -1,5 +1,5 @@
-"""The best local optimum from one start, by both ways to impose stability: first without decay, which asks for no simulation,
-then with it from the design found."""
+"""The best local optimum from one start, by the one or the other way to impose stability: first without decay, which asks for
+no simulation, then with it from the design found."""
 
 from __future__ import annotations
 
@@ -10,17 +10,20 @@ import numpy as np
 from .decay_exchange import solve_with_decay
 from .exchange import EnvelopeSolution, solve_envelope
 from .problem import DesignProblem
-from .program import FactorProgram, HurwitzProgram, has_models
+from .program import FactorProgram, HurwitzProgram, Program, has_models
 from .solve import NlpSolver
 
 __all__ = ["best_local", "held_again"]
+
+HURWITZ_STATES = 6
+"""States up to which the Hurwitz program is tried first; determinants of a higher degree rarely let IPOPT come to an end."""
 
 MUCH_BETTER = 0.1
 """Part of the required decay ratio below which a start decays so much better that it lies in no basin of its own."""
 
 
 def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, ...]]) -> EnvelopeSolution:
-    """Local optimum from `start` by the Hurwitz program; where that fails by the factor program, improved by the first.
+    """Local optimum from `start` by the program that suits the number of states; where that fails by the other.
 
     Parameters
     ----------
@@ -38,7 +41,7 @@ def best_local(solver: NlpSolver, start: Mapping[str, float], points: Sequence[t
     if not has_models(solver.problem):
         return _best_stable(solver, start, points)
     if _decays_moderately(solver.problem, start):  # such a start may lie in a basin of its own
-        direct = solve_with_decay(solver, start, points, HurwitzProgram)
+        direct = solve_with_decay(solver, start, points, _forms(solver.problem)[0])
         if direct.solved:
             return direct
     found = _best_stable(solver, start, points)
@@ -71,14 +74,21 @@ def held_again(
     return solve_with_decay(solver, design, points, form, decay_points)
 
 
+def _forms(problem: DesignProblem) -> tuple[type[Program], type[Program]]:
+    """The program that is tried first, and the other one."""
+    few = len(problem.search_model.state_names) <= HURWITZ_STATES
+    return (HurwitzProgram, FactorProgram) if few else (FactorProgram, HurwitzProgram)
+
+
 def _best_stable(solver: NlpSolver, start: Mapping[str, float], points: Sequence[tuple[float, ...]]) -> EnvelopeSolution:
-    found = solve_envelope(solver, start, points, HurwitzProgram)
+    first, other = _forms(solver.problem)
+    found = solve_envelope(solver, start, points, first)
     if found.solved:
         return found
-    found = solve_envelope(solver, start, points, FactorProgram)
+    found = solve_envelope(solver, start, points, other)
     if not found.solved:
         return found
-    again = solve_envelope(solver, found.solution.design, found.solution.points, HurwitzProgram)
+    again = solve_envelope(solver, found.solution.design, found.solution.points, first)
     return again if again.solved and again.solution.objective < found.solution.objective else found
 
 
@@ -95,6 +105,6 @@ def _decays_moderately(problem: DesignProblem, design: Mapping[str, float]) -> b
 
 
 def _best_decayed(solver: NlpSolver, found: EnvelopeSolution) -> EnvelopeSolution:
-    points = list(found.solution.points)
-    decayed = solve_with_decay(solver, found.solution.design, points, HurwitzProgram)
-    return decayed if decayed.solved else solve_with_decay(solver, found.solution.design, points, FactorProgram)
+    points, (first, other) = list(found.solution.points), _forms(solver.problem)
+    decayed = solve_with_decay(solver, found.solution.design, points, first)
+    return decayed if decayed.solved else solve_with_decay(solver, found.solution.design, points, other)

@@ -110,9 +110,15 @@ def margins(study: Study, design: Mapping[str, float], peaks: Mapping[str, float
     for case, loads in cases.items():
         for member in _each_part(study, design):
             yield from _of_member(study, member, loads, case)
+        for part, stress in study.damper.springs(event, study).items():
+            at_case = float(stress * loads.spring_force / event.spring_force)
+            yield from stress_margins(part, case, at_case, study.mass.damper_material, _factors(study))
         yield from _of_damper(study, design, loads, case)
     for member in _each_part(study, design):
-        yield from _fatigue(study, member, event)
+        standing = 0.0 if member.load == "damper_force" else 1.0
+        yield from _fatigue(study, member.part, study.material, _stress(study, member, event), event, standing)
+    for part, stress in study.damper.springs(event, study).items():
+        yield from _fatigue(study, part, study.mass.damper_material, float(stress), event)
 
 
 def _scaled(event: LimitEvent, ratio: float) -> LimitEvent:
@@ -120,6 +126,11 @@ def _scaled(event: LimitEvent, ratio: float) -> LimitEvent:
         name: ratio * float(getattr(event, name)) for name in ("apex_force", "damper_force", "spring_force", "stroke")
     }
     return replace(event, **forces)
+
+
+def _factors(study: Study) -> tuple[float, float]:
+    """On yield at limit load, and ultimate over limit load."""
+    return study.required.limit_factor, study.required.ultimate_factor
 
 
 def _each_part(study: Study, design: Mapping[str, float]) -> list[Member]:
@@ -139,10 +150,10 @@ def _stress(study: Study, member: Member, loads: LimitEvent) -> float:
 
 def _of_member(study: Study, member: Member, loads: LimitEvent, case: str) -> Iterator[Margin]:
     required, material = study.required, study.material
-    section, factors = getattr(study.mass, member.section), (required.limit_factor, required.ultimate_factor)
+    section = getattr(study.mass, member.section)
     kappa_area, _ = shape_numbers(section)
     stress = _stress(study, member, loads)
-    yield from stress_margins(member.part, case, stress, material, factors)
+    yield from stress_margins(member.part, case, stress, material, _factors(study))
     inertia = (member.area / kappa_area) ** 2 if member.inertia is None else member.inertia
     size = 2 * float(fibre_distance(section, inertia))
     wall = section.thickness_ratio * size if section.family == "tube" else None
@@ -162,10 +173,10 @@ def _of_member(study: Study, member: Member, loads: LimitEvent, case: str) -> It
             yield Margin(
                 member.part, "lateral", case, "ultimate", float(least), member.inertia, required.ultimate_factor, "m^4"
             )
-    if member.kind != "hinge":
+    if not member.is_beam:
         lug = study.mass.lug
         eye = Lug(*(ratio * size for ratio in (lug.bore, lug.thickness, lug.width, lug.edge)))
-        yield from lug_margins(member.part, case, force, eye, material, (required.ultimate_factor, lug.fitting_factor, 1.5))
+        yield from lug_margins(member.part, case, force, eye, material, (required.ultimate_factor, lug.fitting_factor))
         yield bolt_margin(f"pin, {member.part}", case, force, eye.bore, study.mass.damper_material, required.ultimate_factor)
 
 
@@ -184,7 +195,7 @@ def _of_cylinder(study: Study, design: Mapping[str, float], area: float, loads: 
     model, required = study.mass, study.required
     steel, rod, F = model.damper_material, design["rod_diameter"], float(loads.damper_force)
     section, length = math.pi / 4 * rod**2, float(rod_length(replace(loads, stroke=design["s_damper"]), model))
-    yield from stress_margins("damper rod", case, F / section, steel, (required.limit_factor, required.ultimate_factor))
+    yield from stress_margins("damper rod", case, F / section, steel, _factors(study))
     column = Column(section, math.pi / 64 * rod**4, length)
     yield from column_margins("damper rod", case, F, column, steel, required.ultimate_factor)
     D = float(bore(area, rod))
@@ -196,13 +207,13 @@ def _of_cylinder(study: Study, design: Mapping[str, float], area: float, loads: 
     yield Margin("damper", "stroke", case, "limit", float(loads.stroke), design["s_damper"], unit="m")
 
 
-def _fatigue(study: Study, member: Member, event: LimitEvent) -> Iterator[Margin]:
-    """The spectrum of flights, counted."""
-    law, shares = Basquin.of(study.material), event.flight
+def _fatigue(
+    study: Study, part: str, material: Any, stress: float, event: LimitEvent, standing: float = 1.0
+) -> Iterator[Margin]:
+    """The spectrum of flights, counted; what the damper loads feels no standing torque."""
+    law, shares = Basquin.of(material), event.flight
     if law is None or shares is None:
         return
-    stress = _stress(study, member, event)
-    standing = 0.0 if member.load == "damper_force" else 1.0
     turn, tow, landing = (float(share) * stress for share in (standing * shares.turn, standing * shares.tow, shares.landing))
     damage = life_damage_counted(FlightStresses(turn, tow, landing, float(shares.decay)), study.required.fatigue.spectrum, law)
-    yield fatigue_margin(member.part, max(damage, np.finfo(float).tiny), law)
+    yield fatigue_margin(part, max(damage, np.finfo(float).tiny), law)

@@ -44,7 +44,7 @@ def starting_designs(problem: DesignProblem) -> list[dict[str, float]]:
     if not others or all(v.lower == v.upper for v in problem.variables[: len(problem.design_names)]):
         return [study.start]
     promising = promising_designs(problem, (others + 1) // 2)
-    if not promising and problem.has_one_damping:
+    if not promising and problem.has_one_damping and problem.fail_safe is None:
         # nothing meets the requirements at any stiffness: most likely nothing does at all
         others = min(others, HOPELESS)
     sobol = sobol_designs(problem, others - len(promising)).tolist()

@@ -19,9 +19,11 @@ from ..dynamics import build
 from ..linkages.elastic import elastic_linkage
 from ..motion.measure import PEAKS
 from ..objectives import sized_layout
+from ..ports.linkage import Linkage
 from ..ports.sizing import Size
 from ..quantities.named import DesignVariable
 from ..results import OperatingPoint
+from ..stability.fail_safe import FailSafe
 from ..stability.linear import LinearModel
 from ..stability.over_damping import worst_over_damping
 from ..stability.screening import Screening
@@ -75,9 +77,12 @@ class DesignProblem:
     units : dict of str to str
         SI units of the variables.
     has_one_damping, plain : bool
-        Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own.
+        Whether one viscous number stands for the damper, and whether it acts on the gear without states of its own, as strongly
+        at every load.
     model, search_model : LinearModel
         Of the study, and of the rational one that the program holds in its place where the tyre has a delay.
+    fail_safe, fail_safe_search : FailSafe or None
+        The same with the actuator off, where there is one.
     shifted_matrix : casadi.Function
         (design, data, speed, load) -> A + (margin + reserve) 1, stable iff the margin holds.
     """
@@ -86,6 +91,9 @@ class DesignProblem:
         self.study, searched = study, searched_study(study)
         self.model = LinearModel(study)
         self.search_model = self.model if searched is study else LinearModel(searched)
+        self.fail_safe = self.fail_safe_search = None if study.damper.actuator is None else FailSafe(study)
+        if self.fail_safe is not None and searched is not study:
+            self.fail_safe_search = FailSafe(searched)
         self.design_names = study.variable_names
         self.data = np.array(data_values(study))
         self.data_names = data_names(study)
@@ -99,7 +107,8 @@ class DesignProblem:
         link = elastic_linkage(made, design)
         sized = sized_layout(made, design, link, load, [factors[i] for i in range(len(PEAKS))])
         parts = sized.masses
-        self.constraints: tuple[Constraint, ...] = tuple(strength(made, design, sized) + geometry(made, design, link, sized))
+        rows = strength(made, design, sized, _softness(made, design, link, load)) + geometry(made, design, link, sized)
+        self.constraints: tuple[Constraint, ...] = tuple(rows)
         own_sizes = [size for size in sized.sizes if size.name not in design]
         own_sizes += [_wall_size(key, symbol, *walls[key]) for key, symbol in open_walls.items()]
         self.size_names = tuple(size.name for size in own_sizes)
@@ -117,7 +126,8 @@ class DesignProblem:
         self._event = ca.Function("event", without_sizes, [ca.vertcat(*peaks_of(sized.event))])
         damping = symbols.study.damper.damping({**design, **link.as_printed})
         self.has_one_damping = damping is not None
-        self.plain = self.has_one_damping and dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
+        rigid = dae.x.numel() == len(study.gear.states()) + len(searched.tyre.states)
+        self.plain = self.has_one_damping and rigid and self.fail_safe is None and study.gear.strut is None
         damping = ca.SX.nan() if damping is None else damping * link.damper_lever**2
         self._yaw = ca.Function("yaw", [dae.design, symbols.data], [link.torsional_stiffness, damping])
 
@@ -158,23 +168,43 @@ class DesignProblem:
         return Screening(searched_study(self.study))
 
     def worst_points(self, design: Mapping[str, float], enough: float = np.inf) -> list[OperatingPoint]:
-        """Local maxima of the spectral abscissa of a design over envelope and dampings, as `worst_over_damping` has them."""
-        return worst_over_damping(self.model, self.study, design, enough)
+        """Local maxima of the spectral abscissa of a design over envelope and dampings, as `worst_over_damping` has them; with
+        an actuator also where it is off, as `FailSafe` has them."""
+        found = worst_over_damping(self.model, self.study, design, enough)
+        if self.fail_safe is not None:
+            found += self.fail_safe.worst_points(design, enough)
+        return sorted(found, key=lambda point: -point.abscissa)
 
     def abscissae(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
         """Spectral abscissa of a design at points (m, 3) of speed, load and factor on the damping, (m,) [1/s]."""
-        return self._at(self.model, design, points, lambda gear, V, F: gear.abscissa(V, F))
+        return self._exact(design, points) + self.less(points)
+
+    def less(self, points: np.ndarray) -> np.ndarray:
+        """What margins at points (m, 3) are larger than that of the study, (m,) [1/s]: where an actuator is off."""
+        return np.where(points[:, 2] < 0, 0.0 if self.fail_safe is None else self.fail_safe.less, 0.0)
+
+    def _exact(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
+        return self._at(self.model, self.fail_safe, design, points, lambda gear, V, F: gear.abscissa(V, F))
 
     def matrices(self, design: Mapping[str, float], points: np.ndarray) -> np.ndarray:
         """State matrices of the rational model at such points, (m, n, n)."""
-        return self._at(self.search_model, design, points, lambda gear, V, F: gear.matrices(V, F))
+        models = self.search_model, self.fail_safe_search
+        return self._at(*models, design, points, lambda gear, V, F: gear.matrices(V, F))
 
-    def _at(self, model: LinearModel, design: Mapping[str, float], points: np.ndarray, ask: Callable[..., Any]) -> np.ndarray:
-        """Of the gears with each factor, asked at their points together."""
+    def _at(
+        self,
+        model: LinearModel,
+        fail_safe: FailSafe | None,
+        design: Mapping[str, float],
+        points: np.ndarray,
+        ask: Callable[..., Any],
+    ) -> np.ndarray:
+        """Of the gears with each factor, asked at their points together; below 0 with the actuator off."""
         found: list[Any] = [None] * len(points)
         for factor in dict.fromkeys(points[:, 2]):
             where = np.flatnonzero(points[:, 2] == factor)
-            gear = model.at(self.study.damper.with_damping(design, float(factor)))
+            on = model if fail_safe is None or factor > 0 else fail_safe.model
+            gear = on.at(self.study.damper.with_damping(design, abs(float(factor))))
             for i, value in zip(where, ask(gear, points[where, 0], points[where, 1]), strict=True):
                 found[i] = value
         return np.array(found)
@@ -183,8 +213,8 @@ class DesignProblem:
         """What the exact abscissa of a design has beyond that of the rational model that the program holds, (m,) [1/s]."""
         if self.search_model is self.model:
             return np.zeros(len(points))
-        rational = self._at(self.search_model, design, points, lambda gear, V, F: gear.abscissa(V, F))
-        return self.abscissae(design, points) - rational
+        models = self.search_model, self.fail_safe_search
+        return self._exact(design, points) - self._at(*models, design, points, lambda gear, V, F: gear.abscissa(V, F))
 
     # plain functions of a design, for reports, tests and other optimisers. `factors` are simulated over estimated peaks of
     # the limit event, of `factors_of`; left out, a torque must be the limit event. None of them simulates.
@@ -305,3 +335,11 @@ def _with_walls(study: Any, walls: Mapping[str, ca.SX]) -> Any:
 
 def _wall_size(section: str, wall: ca.SX, least: float, most: float) -> Size:
     return Size(f"{section} wall", "1", wall, {"least": (least, ())}, least, least, most)
+
+
+def _softness(study: Any, design: Mapping[str, ca.SX], linkage: Linkage, load: ca.SX) -> Any:
+    """Stroke of the damper under a torque at the largest load over that with the shock strut fully out, s'/k_psi of both."""
+    if study.gear.strut is None or study.damper.ROTARY:
+        return 1
+    pressed = elastic_linkage(study, design, study.gear.stroke(load))
+    return pressed.damper_lever / pressed.torsional_stiffness * linkage.torsional_stiffness / linkage.damper_lever

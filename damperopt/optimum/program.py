@@ -152,6 +152,7 @@ class _Common:
             limit = ca.log(ratio) + np.log1p(-problem.study.solver.decay_reserve)
             self.decay = cuts.T @ known - limit
             self.parameters |= {"cuts": cuts}
+        less = _less(problem, data)
         if margin is not None:
             data = ca.vertcat(data)  # a copy: the parameter keeps its place, the model sees the variable
             data[problem.data_names.index("requirements.stability_margin")] = margin
@@ -160,8 +161,12 @@ class _Common:
         def named(values: ca.SX) -> dict[str, ca.SX]:
             return {name: values[i] for i, name in enumerate(problem.design_names)}
 
-        of_slot = [ca.vertcat(*problem.study.damper.with_damping(named(design), factor[i]).values()) for i in range(slots)]
-        slots_in = ([of_slot[i], data, V[i], F_z[i], corrections[i], rate[i]] for i in range(slots))
+        def in_slot(i: int) -> list[ca.SX]:
+            of_slot = problem.study.damper.with_damping(named(design), ca.fabs(factor[i]))
+            correction = corrections[i] + less * (factor[i] < 0)
+            return [ca.vertcat(*of_slot.values()), _powered(problem, data, factor[i]), V[i], F_z[i], correction, rate[i]]
+
+        slots_in = (in_slot(i) for i in range(slots))
         self.slots = Slots([[1.0, *ca.vertsplit(polynomial(*given))] for given in slots_in], rate)
 
     def numbers(
@@ -180,7 +185,8 @@ class _Common:
         shift = problem.study.solver.margin_reserve
         shift += problem.study.required.stability_margin if margin is None else margin
         corrections = problem.corrections(design, filled)
-        roots = np.linalg.eigvals(problem.matrices(design, filled)) + shift + corrections[:, None]
+        shifts = shift + corrections + problem.less(filled)
+        roots = np.linalg.eigvals(problem.matrices(design, filled)) + shifts[:, None]
         rates = np.exp(np.log(np.abs(roots) + SLOWEST_ROOT).mean(axis=1))
         values = {"data": problem.data, "load_limit": problem.load_limit, "speeds": V, "loads": F_z, "rates": rates}
         values |= {"corrections": corrections, "factors": factor}
@@ -201,6 +207,25 @@ class _Common:
         x0 = np.clip(self.problem.scaled(design), lower, upper)
         around = np.append(np.full(x0.size - 1, radius), np.inf)  # the rod follows the design
         return Limits(np.maximum(lower, x0 - around), np.minimum(upper, x0 + around), x0)
+
+
+def _less(problem: DesignProblem, data: ca.SX) -> ca.SX:
+    """What the margin with an actuator off is larger than the other [1/s], as a function of the data."""
+    if problem.fail_safe is None:
+        return ca.SX(0)
+    name = "requirements.fail_safe_margin"
+    own = data[problem.data_names.index(name)] if name in problem.data_names else 0
+    return own - data[problem.data_names.index("requirements.stability_margin")]
+
+
+def _powered(problem: DesignProblem, data: ca.SX, factor: ca.SX) -> ca.SX:
+    """Data without the gains of an actuator that is off."""
+    gains = [i for i, name in enumerate(problem.data_names) if name.startswith("damper.control.gains.")]
+    if problem.fail_safe is None or not gains:
+        return data
+    data = ca.vertcat(data)
+    data[gains] = data[gains] * (factor > 0)
+    return data
 
 
 def _columns(points: Points) -> np.ndarray:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from ..stability.screening import SPEEDS, worst_abscissae_of
 from ..study.study import Study
 from .problem import ESTIMATED, DesignProblem
 
 __all__ = ["FeasibleRegion", "feasible_region"]
+
+COARSE = 4
+"""Nodes in a cell of the grid on which stability is looked at first, where that takes eigenvalues."""
 
 PER_CYCLE = 64
 """Times in a cycle of the slowest mode: a yaw mode of four times its frequency is still a curve."""
@@ -31,7 +36,7 @@ class FeasibleRegion:
         (k, m) [kg].
     stability : ndarray
         (k, m) over the speeds and loads looked at > 0 where the margin holds: beside its limit how far the spectral abscissa is
-        from it [1/s], elsewhere the least stability condition, scaled.
+        from it [1/s], elsewhere the least stability condition, scaled, or what lies between coarser nodes.
     violated : dict of str to ndarray
         Strength and geometry rows by name, (k, m), > 0 where the constraint is violated.
     design : dict
@@ -125,7 +130,34 @@ def _stability(
         return stability
     scaled = designs.copy()
     scaled[:, [name == study.damper.VISCOUS for name in problem.design_names]] *= factor
-    return -study.required.stability_margin - worst_abscissae_of(problem.model, study, scaled, worst)
+
+    def kept(which: np.ndarray) -> np.ndarray:
+        return -study.required.stability_margin - worst_abscissae_of(problem.model, study, scaled[which.ravel()], worst)
+
+    return _near_zero(kept, shape).ravel()
+
+
+def _near_zero(function: Callable[[np.ndarray], np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    """Values on a grid: at its nodes in the cells of a coarser one through which zero passes, elsewhere between its corners.
+
+    `function` has the values at the nodes of a mask, in order.
+    """
+    rows, columns = (np.unique(np.append(np.arange(0, size, COARSE), size - 1)) for size in shape)
+    known = np.zeros(shape, bool)
+    known[np.ix_(rows, columns)] = True
+    corners = function(known).reshape(rows.size, columns.size)
+    nodes = np.moveaxis(np.indices(shape), 0, -1)
+    values: np.ndarray = RegularGridInterpolator((rows, columns), corners)(nodes)
+    while True:
+        wanted = np.zeros(shape, bool)
+        for i, j in itertools.product(range(rows.size - 1), range(columns.size - 1)):
+            cell = slice(rows[i], rows[i + 1] + 1), slice(columns[j], columns[j + 1] + 1)
+            kept = values[cell] > 0
+            wanted[cell] |= kept.any() and not kept.all()
+        wanted &= ~known
+        if not wanted.any():
+            return values
+        values[wanted], known = function(wanted), known | wanted
 
 
 def _beside_the_limit(values: np.ndarray) -> np.ndarray:

@@ -9,9 +9,11 @@ import numpy as np
 
 from ..results import DesignResult
 from ..stability.gear import LinearGear
+from ..stability.wavelength import contact_line_words, shortest_wavelength
 from ..stability.yaw_mode import yaw_modes
 from ..strength.fatigue import Basquin, words_of
 from ..strength.materials import words_about
+from ..study.cavitation import cavitation
 from ..study.plausibility import Answer, implausible, implausible_answer, implausible_masses
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
@@ -42,19 +44,27 @@ def said_of(study: Study, result: DesignResult, gear: LinearGear) -> dict[str, A
     proof = result.certificate
     answer = Answer.of(result, yaw_frequencies(study, gear))
     flags = (*implausible_answer(study, answer), *implausible_masses(answer.parts), *implausible(study, result.design))
+    shown = result.decay.peaks.get("damper_force", 0.0) if result.decay is not None else 0.0
+    boils = cavitation(study, result.design, max(shown, result.limit_event.get("damper_force", 0.0)))
     return {
         "verdict": "undecided" if proof is None else proof.found,
-        "witness": {} if proof is None or proof.counterexample is None else _witness(gear, *proof.counterexample),
+        "witness": {} if proof is None or proof.counterexample is None else _witness(study, gear, *proof.counterexample),
         "covers": tuple(covers(study)),
-        "leaves_out": (*left_out_by_number(study, result.design), *leaves_out(study)),
+        "leaves_out": (*_contact_line(study, gear), *left_out_by_number(study, result.design), *leaves_out(study)),
         "rests_on": rests_on(study, result.design),
-        "implausible": tuple(map(str, flags)),
+        "implausible": (*map(str, flags), *filter(None, [boils])),
     }
 
 
-def _witness(gear: LinearGear, speed: float, load: float) -> dict[str, float]:
+def _contact_line(study: Study, gear: LinearGear) -> tuple[str, ...]:
+    """What a contact line that is not the exact one means at the shortest wave of the envelope."""
+    return contact_line_words(study, shortest_wavelength(study, gear)) if study.tyre.contact.least_wave() else ()
+
+
+def _witness(study: Study, gear: LinearGear, speed: float, load: float) -> dict[str, float]:
     """Point of the envelope, and the frequency at which the gear moves there [rad/s]."""
-    return {"speed": speed, "load": load, "frequency": abs(float(gear.roots([speed], [load], 1)[0, 0].imag))}
+    stroke = {} if study.gear.strut is None else {"stroke": float(study.gear.stroke(load))}
+    return {"speed": speed, "load": load, **stroke, "frequency": abs(float(gear.roots([speed], [load], 1)[0, 0].imag))}
 
 
 def yaw_frequencies(study: Study, gear: LinearGear) -> list[float]:

@@ -7,6 +7,7 @@ near those of the whole problem, however thin the pocket of the stable region th
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,9 @@ SAMPLE = 1024
 
 STIFFNESSES, DAMPINGS = 64, 96
 """Grid of the scan."""
+
+STRIDE = 4
+"""Every so many stiffnesses are looked at first, the others beside those that strength and geometry allow."""
 
 
 @dataclass(frozen=True)
@@ -81,12 +85,19 @@ def stiffness_scan(problem: DesignProblem) -> list[ScanPoint]:
     if decay is not None:
         stable[stable] = problem.screening.linear_decay(K.ravel()[stable], C.ravel()[stable]) <= decay.ratio
     stable = stable.reshape(K.shape)
-    layouts, points = _Layouts(problem, start), []
-    for i in np.flatnonzero(stable.any(axis=1)):
-        point = layouts.lightest(k[i], c[int(stable[i].argmax())])
-        if point is not None:
-            points.append(point)
-    return points
+    layouts, rows = _Layouts(problem, start), np.flatnonzero(stable.any(axis=1))
+    found: dict[int, ScanPoint] = {}
+
+    def look(places: Iterable[int]) -> None:
+        for i in places:
+            point = layouts.lightest(k[rows[i]], c[int(stable[rows[i]].argmax())])
+            if point is not None:
+                found[i] = point
+
+    look(range(0, rows.size, STRIDE))
+    near = {i for place in found for i in range(place - STRIDE + 1, place + STRIDE)} if found else {*range(rows.size)}
+    look(sorted(i for i in near - {*range(0, rows.size, STRIDE)} if 0 <= i < rows.size))
+    return [found[i] for i in sorted(found)]
 
 
 def steady_designs(problem: DesignProblem, count: int) -> list[dict[str, float]]:

@@ -170,7 +170,10 @@ class StockSearch:
                 )
             found[name] = tuple(sorted(run, key=lambda tube: (_number(name, tube), tube.diameter)))
         known = {SECTIONS[name][1] for name in study.variable_names if name in SECTIONS}
-        others = {member.part for member in study.damper.members(study.start) if member.section and member.section not in known}
+        members = [member for member in study.damper.members(study.start) if member.section and member.section not in known]
+        if any(member.section == "hinge_section" for member in members):
+            self._left_out.append("tubes for the beams of hinges: they are of one piece with the strut, and of any size")
+        others = {member.part for member in members if member.section != "hinge_section"}
         self._left_out += [
             f"tubes for the {part}: without a compliance of its own its section is no choice" for part in sorted(others)
         ]

@@ -172,7 +172,7 @@ def _member(study: Study, member: Member, legs: Sequence[Member], event: LimitEv
         found.insert(0, Size(part, "number of legs", float(len(legs)), "1"))
         feet = [float(leg.start[1]) for leg in legs]
         found.append(Size(part, "width between the feet", max(feet) - min(feet), "m"))
-    if member.kind != "hinge" and study.damper.has_sized_parts():
+    if not member.is_beam and study.damper.has_sized_parts():
         found.append(Size(part, "bore of its eye, diameter of the pin", float(study.mass.lug.bore * height), "m"))
     return found
 

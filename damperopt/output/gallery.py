@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from ..stability.linear import LinearModel
 from ..stability.modes import ModeTable, track_modes
 from ..study.study import Study
 from ..tyres.curves import TyreCurves
-from .tables import write_chart, write_chart_json, write_modes, write_tyre
+from .tables import write_chart, write_chart_json, write_modes, write_response, write_tyre
 
 __all__ = [
     "Answer",
@@ -40,6 +41,9 @@ __all__ = [
 
 SPEEDS = 400
 """Speeds of a table and a figure of modes."""
+
+CELLS, DRAWN = 32, 3e-4
+"""Of a stability chart that is drawn: where its search begins, and less than a dot, in parts of the axes."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,12 @@ class Answer:
     def speeds(self) -> np.ndarray:
         """(m,) of the envelope [m/s]."""
         return np.unique(np.linspace(self.study.envelope.speed.min, self.study.envelope.speed.max, SPEEDS))
+
+    @cached_property
+    def modes(self) -> list[ModeTable]:
+        """Modes of the design over these speeds at each load."""
+        gear = self.model.at(self.result.design)
+        return [track_modes(gear, self.speeds, load) for load in self.study.envelope.loads]
 
     @property
     def worst(self) -> tuple[float, float]:
@@ -143,6 +153,8 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
         margin=margin,
         design=result.design,
         load=result.stability.load,
+        cells=CELLS,
+        tolerance=DRAWN,
     )
 
 
@@ -152,7 +164,8 @@ def design_chart(study: Study, result: DesignResult, margin: float) -> Stability
 def _modes(answer: Answer) -> tuple[ModeTable, ModeTable]:
     load = answer.worst[1]
     before, after = (answer.model.at(design) for design in (answer.study.start, answer.result.design))
-    return track_modes(before, answer.speeds, load), track_modes(after, answer.speeds, load)
+    tables = {table.load: table for table in answer.modes}  # the worst load of a range may lie within it
+    return track_modes(before, answer.speeds, load), tables.get(load) or track_modes(after, answer.speeds, load)
 
 
 def _charts(answer: Answer) -> tuple[StabilityChart, StabilityChart | None]:
@@ -292,8 +305,7 @@ def write_design(place: Path, study: Study, result: DesignResult, figures: bool)
     if result.stability is None:
         return
     answer = Answer.of(study, result)
-    after = answer.model.at(result.design)
-    write_modes(place / "modes.csv", [track_modes(after, answer.speeds, load) for load in study.envelope.loads])
+    write_modes(place / "modes.csv", answer.modes)
     if figures:
         _save({figure.name: _drawing(figure, answer) for figure in figures_of(result)}, place)
 
@@ -359,7 +371,11 @@ def write_tyre_files(place: Path, record: TyreCurves) -> None:
         return drawn
 
     write_tyre(place, record)
-    _save({"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}, place)
+    figures = {"slip": drawing("tyre_over_slip"), "load": drawing("tyre_over_load")}
+    if record.response is not None:
+        write_response(place / "tyre-response.csv", record.response)
+        figures["response"] = drawing("tyre_over_path")
+    _save(figures, place)
 
 
 def _drawing(figure: DesignFigure, answer: Answer) -> Callable[[], Any]:

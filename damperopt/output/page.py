@@ -14,7 +14,6 @@ from ..answers.stock import candidate_cells, stock_words
 from ..errors import ConfigError
 from ..optimum.left_out import left_out_by_number
 from ..results import DesignResult, load_result
-from ..stability.modes import ModeTable, track_modes
 from ..study.scope import covers, leaves_out
 from ..study.study import Study
 from . import facts, margins, words
@@ -67,7 +66,7 @@ def report_of(results: Sequence[DesignResult], folder: Path | None = None) -> st
         unchecked=margins.unchecked(best),
         by_case=margins.margins_by_case(best),
         parts=margins.parts_list(best, facts.sizes(study, best)) if answer else [],
-        damping=words.damping_rows(facts.least_damping(_modes(answer))) if answer else [],
+        damping=words.damping_rows(facts.least_damping(answer.modes)) if answer else [],
         beyond=words.beyond(study, facts.next_critical_speed(study, answer.model.at(best.design))) if answer else "",
         figures=[(figure, _embedded(figure, answer, folder)) for figure in figures_of(best)] if answer else [],
         assumptions=words.assumptions(study, best),
@@ -111,11 +110,6 @@ def _leaves_out(study: Study, result: DesignResult) -> tuple[str, ...]:
     if result.leaves_out or not result.design:
         return result.leaves_out
     return (*left_out_by_number(study, result.design), *leaves_out(study))
-
-
-def _modes(answer: Answer) -> list[ModeTable]:
-    gear = answer.model.at(answer.result.design)
-    return [track_modes(gear, answer.speeds, load) for load in answer.study.envelope.loads]
 
 
 def write_report(folder: str | Path) -> Path:

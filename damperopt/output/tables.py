@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,10 @@ from ..stability.modes import ModeTable
 from ..study.components import unit_of_name
 from ..study.disturbances import Disturbance
 from ..tyres.curves import TyreCurves
+from ..tyres.path_response import RESPONSES, PathResponse
+
+if TYPE_CHECKING:
+    from ..motion.roll import Roll
 
 __all__ = [
     "write_chart",
@@ -24,6 +29,8 @@ __all__ = [
     "write_modes",
     "write_motion",
     "write_ranking",
+    "write_response",
+    "write_roll",
     "write_trajectory",
     "write_tyre",
 ]
@@ -92,6 +99,23 @@ def write_motion(
     path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
+def write_roll(
+    path: Path, trajectory: Trajectory, found: Roll, disturbance: Disturbance | None, design: Mapping[str, float]
+) -> None:
+    """What a motion along a history shows as JSON, with the question that it answers."""
+    record = {
+        "along": trajectory.along,
+        "disturbance": None if disturbance is None else disturbance.model_dump(exclude_none=True),
+        "design": dict(design),
+        "engine": trajectory.engine,
+        "status": trajectory.status,
+        "message": trajectory.message,
+        "duration": float(trajectory.time[-1] - trajectory.time[0]),
+        **asdict(found),
+    }
+    path.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
 def write_chart(path: Path, record: StabilityChart) -> None:
     """Curves of a chart as CSV: one row per point, in order along each curve."""
     with open(path, "w", newline="", encoding="utf-8") as file:
@@ -129,6 +153,18 @@ def write_tyre(folder: Path, record: TyreCurves) -> None:
         for load, force, moment in zip(record.drawn, record.force, record.moment, strict=True):
             for alpha, F_y, M_z in zip(record.slips, force, moment, strict=True):
                 writer.writerow([f"{load:.9g}", f"{alpha:.9g}", _or_empty(F_y), _or_empty(M_z)])
+
+
+def write_response(path: Path, record: PathResponse) -> None:
+    """Force and moment over path frequency as CSV: a row for each contact line and frequency, real and imaginary parts [SI]."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        parts = [f"{name} {part} [{unit}]" for name, unit in RESPONSES.items() for part in ("real", "imaginary")]
+        writer.writerow(["contact line", "load [N]", "path frequency [rad/m]", "contact lengths per wave", *parts])
+        for line, values in record.lines.items():
+            for k, length, response in zip(record.frequencies, record.contact_lengths, values.T, strict=True):
+                numbers = [part for value in response for part in (value.real, value.imag)]
+                writer.writerow([line, *(f"{number:.9g}" for number in (record.load, k, length, *numbers))])
 
 
 def _or_empty(value: float) -> str:

@@ -10,7 +10,7 @@ from ..answers.bound import bound_words
 from ..quantities.record import LoadRange
 from ..quantities.shown import as_written, shown
 from ..quantities.shown import scale as scale_of
-from ..results import DesignResult
+from ..results import Certificate, DesignResult
 from ..stability.critical import CriticalSpeed
 from ..study.components import unit_of_name
 from ..study.study import Study
@@ -113,8 +113,19 @@ def assumptions(study: Study, result: DesignResult) -> list[str]:
             f"Bulk modulus of the oil {bulk}, {model.damper_fixed_mass:g} kg of the damper that no size changes, and the "
             "proportions of eyes and pins (mass.lug) are typical where the study does not give them."
         )
+        found += _held(study)
     found += [f"{words[:1].upper()}{words[1:]}." for words in result.rests_on]
     return [*found, "Mass and strength follow the sizing rules of the study page: estimates for comparison, no stress report."]
+
+
+def _held(study: Study) -> list[str]:
+    """Where the strut holds the beams of hinges."""
+    links = getattr(study.damper, "links", None)
+    if links is None or not any(member.is_beam for member in study.damper.members(study.start)):
+        return []
+    if links.strut_width is None:
+        return ["Beams of hinges are held on the axis of the strut, on the safe side (damper.links.strut_width)."]
+    return [f"Beams of hinges are held at the sides of a strut {number(links.strut_width, 'm')} wide, which does not give way."]
 
 
 def _range(values: Sequence[float], unit: str, ends: bool) -> str:
@@ -220,10 +231,14 @@ def beyond(study: Study, found: CriticalSpeed | None) -> str:
 
 
 def certificate(result: DesignResult) -> str:
-    """The proof in words."""
-    proof = result.certificate
-    if proof is None:
+    """The proof in words; with an actuator both."""
+    if result.certificate is None:
         return "Nothing was proved."
+    words = _proof_in_words(result.certificate)
+    return words if result.fail_safe is None else f"{words} With the actuator off: {_proof_in_words(result.fail_safe)}"
+
+
+def _proof_in_words(proof: Certificate) -> str:
     method = {
         "sturm": "the coefficients of the characteristic polynomial are exact polynomials of the speed, and exact root counts "
         "(Sturm) show that none of the stability conditions changes sign",

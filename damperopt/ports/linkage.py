@@ -144,7 +144,7 @@ class Member:
     part : str
         Part of the mass table that it counts to; empty: it is not weighed here (a damper weighs itself).
     kind : str
-        ``link``, ``arm``, ``hinge``, ``support`` or ``damper``: how it is drawn.
+        ``link``, ``arm``, ``beam`` (of its section), ``hinge``, ``foot`` (hinge of a support), ``support`` or ``damper``.
     start, end : Point
         [m], at rest.
     section : str
@@ -166,6 +166,8 @@ class Member:
         Length that is weighed [m]; None: from start to end.
     bending_length : Expr or None
         Lever of the load at the root [m]; None: the length.
+    thrust : Expr
+        Force along a member that bends over the load.
     """
 
     name: str
@@ -182,3 +184,9 @@ class Member:
     variable: str = ""
     length: Expr = None
     bending_length: Expr = None
+    thrust: Expr = 0
+
+    @property
+    def is_beam(self) -> bool:
+        """Whether others turn on it: it has no eyes of its own."""
+        return self.kind in ("beam", "hinge", "foot")

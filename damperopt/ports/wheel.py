@@ -33,6 +33,10 @@ class Wheel:
         [rad]
     index : int
         Of this wheel among those of the gear.
+    pressure : Expr or None
+        Of its tyre [Pa]; None: that of the study.
+    load_rate : Expr
+        Of F_z along a history [N/s].
     """
 
     speed: Expr
@@ -45,6 +49,8 @@ class Wheel:
     forward_rate: Expr = 0
     camber: Expr = 0
     index: int = 0
+    pressure: Expr = None
+    load_rate: Expr = 0
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,8 @@ class Contact:
         Backwards [N].
     outputs : mapping of str to Expr
         Other quantities by declared name [SI].
+    deflection : Expr or None
+        Of the tyre on the ground against its wheel, in the direction of the side force, were it standing [m]; None: unknown.
     wheel : Wheel or None
         The wheel that it belongs to: gears read load and speed from it.
     """
@@ -72,4 +80,5 @@ class Contact:
     aligning_moment: Expr
     drag: Expr = 0
     outputs: Mapping[str, Expr] = field(default_factory=dict)
+    deflection: Expr = 0
     wheel: Wheel | None = None

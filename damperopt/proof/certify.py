@@ -19,6 +19,7 @@ import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, TypeAlias
 
 import flint
@@ -26,6 +27,7 @@ import numpy as np
 
 from ..results import Certificate
 from ..stability.linear import LinearModel
+from ..study.scope import place_words
 from ..study.study import Study
 from ..symbols import data_values
 from .damping import Interval, over_damping
@@ -38,11 +40,6 @@ __all__ = ["certify"]
 
 Q: TypeAlias = flint.fmpq
 ONE = Q(1)
-
-NO_RANGE = (
-    "not proved: the forces of this tyre are no polynomial in the load, and a proof over a range of loads needs one; "
-    "a list of loads can be proved load by load"
-)
 
 MARGINAL = 1e-9
 """Relative to the largest root: an abscissa that is the margin but for the rounding of eigenvalues."""
@@ -79,17 +76,17 @@ def certify(
     envelope = study.envelope
     speeds, loads = (envelope.speed.min, envelope.speed.max), envelope.loads
     model = LinearModel(study) if model is None else model
-    if model.structure is not None:
+    if model.structure is not None or (envelope.load_is_range and model.powers.load is None):
         return certify_delay(study, design, margin, model)
     method = "bernstein" if envelope.load_is_range else "sturm"
+
+    place = partial(place_words, study)
 
     def outcome(point: tuple[float, float] | None, reason: str, boxes: int = 0, proved: bool | None = None) -> Certificate:
         proved = point is None if proved is None else proved
         verdict: Any = "proved" if proved else "undecided" if point is None else "refuted"
         return Certificate(proved, margin, speeds, loads, method, point, reason, boxes, verdict)
 
-    if envelope.load_is_range and model.powers.load is None:
-        return outcome(None, NO_RANGE, proved=False)
     if interval := Interval.of(study):
         return _over_damping(study, model, design, margin, interval)
     family = _Family(study, model, design, margin)
@@ -102,7 +99,7 @@ def certify(
                 return outcome(
                     start, f"marginal at every speed: a root lies on the line Re = {0 - margin:g} 1/s at each of them"
                 )
-            return outcome(start, f"missed at {_place(start)}, the low end of the range")
+            return outcome(start, f"missed at {place(start)}, the low end of the range")
 
     if envelope.load_is_range:
         boxes = 0
@@ -110,9 +107,9 @@ def certify(
             point, examined = zero_in_rectangle(condition, speeds, loads)
             boxes += examined
             if point is not None and family.stable_at(decimal(point[0]), decimal(point[1])):
-                return outcome(None, f"undecided near {_place(point)}, where the margin is kept", boxes, proved=False)
+                return outcome(None, f"undecided near {place(point)}, where the margin is kept", boxes, proved=False)
             if point is not None:
-                return outcome(point, f"missed or touched at {_place(point)}", boxes)
+                return outcome(point, f"missed or touched at {place(point)}", boxes)
         return outcome(None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and loads", boxes)
 
     for load in loads:
@@ -120,7 +117,7 @@ def certify(
         if zeros:
             worst = family.worst_between(sorted(zeros), speeds, load), load
             meeting = ", ".join(f"{V:.6g}" for V in sorted(zeros))
-            return outcome(worst, f"missed or touched at {_place(worst)}; roots meet the line at {meeting} m/s")
+            return outcome(worst, f"missed or touched at {place(worst)}; roots meet the line at {meeting} m/s")
     return outcome(None, "one point is stable, and no root can cross at any speed")
 
 
@@ -136,7 +133,7 @@ def _over_damping(
         return Certificate(*known, damping=interval.factors, damping_factor=factor)
 
     def near(V: float, load: float, factor: float) -> str:
-        return f"{_place((V, load))}, {factor:.6g} times the damping"
+        return f"{place_words(study, (V, load))}, {factor:.6g} times the damping"
 
     for load in loads:
         family = _OverDamping(study, model, design, margin, load, interval)
@@ -155,10 +152,6 @@ def _over_damping(
     return outcome(
         "proved", None, "one point is stable, and no root can cross anywhere in the rectangle of speeds and dampings"
     )
-
-
-def _place(point: tuple[float, float]) -> str:
-    return f"{point[0]:.6g} m/s, {point[1] / 1e3:.6g} kN"
 
 
 class _Family:

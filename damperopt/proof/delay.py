@@ -11,6 +11,8 @@ Claim: no root of D(lambda) lies right of Re = -mu, for all speeds V and loads F
 Where the damping is uncertain, it takes the place of F_z, at one load after the other. Where a box cannot be freed of 0, roots
 are counted near it: N > 0 at one point is a proof that the margin is missed there. The verdict is else left open. Vehicle
 speed and load are constants in each motion (frozen). No part of the optimiser is used.
+
+A gear whose tyre has states alone is taken as a structure without wheels, where it is no polynomial in the load.
 """
 
 from __future__ import annotations
@@ -27,11 +29,13 @@ import numpy as np
 from ..errors import ConfigError
 from ..results import Certificate
 from ..stability.linear import LinearGear, LinearModel
+from ..study.scope import place_words
 from ..study.study import Study
 from .boxes import Box, Strips
 from .damping import Interval
-from .quasi import OverDamping, Quasipolynomial
+from .quasi import OverDamping, Quasipolynomial, UnlikeTyres
 from .rationals import decimal
+from .varying import structure_of
 
 __all__ = ["certify_delay", "roots_to_the_right"]
 
@@ -51,11 +55,6 @@ FREQUENCIES, SPEEDS, LOADS = 4, 2.0, 1.5
 
 LOOKED_AT = 48
 """Speeds at each load where eigenvalues hint at a point to count at; a hint proves nothing."""
-
-NO_RANGE = (
-    "not proved: gear or damper are no polynomial in the load, and a proof over a range of loads needs one; "
-    "a list of loads can be proved load by load"
-)
 
 ASIDE = (0.0, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from a box that keeps its 0 at which roots are counted."""
@@ -87,12 +86,22 @@ def certify_delay(study: Study, design: Mapping[str, float], margin: float, mode
     -------
     Certificate
     """
+    try:
+        return _certificate(study, design, margin, model)
+    except UnlikeTyres as error:
+        speed, words = (
+            study.envelope.speed,
+            f"not proved: {error}; eigenvalues are exact, and a line without delay can be proved",
+        )
+        return Certificate(False, margin, (speed.min, speed.max), study.envelope.loads, "balls", None, words, 0, "undecided")
+
+
+def _certificate(study: Study, design: Mapping[str, float], margin: float, model: LinearModel) -> Certificate:
     with flint.ctx.workprec(BITS):
         interval = Interval.of(study)
         if interval is None:
             return _Proof(study, design, margin, model).certificate()
-        assert model.structure is not None
-        whole, boxes = Quasipolynomial(study, model.structure, design), 0
+        whole, boxes = Quasipolynomial(study, structure_of(model), design), 0
         for load in study.envelope.loads:
             found = _OverDamping(study, design, margin, model, whole.over_damping(decimal(load)), interval).certificate()
             boxes += found.boxes
@@ -132,18 +141,16 @@ class _Proof:
         model: LinearModel,
         characteristic: Quasipolynomial | OverDamping | None = None,
     ):
-        assert model.structure is not None
+        self._study = study
         self._envelope, self._margin, self._gear = study.envelope, margin, model.at(design)
-        self._strips = Strips(characteristic or Quasipolynomial(study, model.structure, design), margin)
-        self._boxes, self._polynomial = 0, model.structure.powers.load is not None
+        self._strips = Strips(characteristic or Quasipolynomial(study, structure_of(model), design), margin)
+        self._boxes = 0
         speed, loads = study.envelope.speed, [decimal(F) for F in study.envelope.loads]
         self._speeds = decimal(speed.min), decimal(speed.max)
         self._spans = [(loads[0], loads[-1])] if study.envelope.load_is_range else [(F, F) for F in loads]
 
     def certificate(self) -> Certificate:
         """The three steps for every load or the range of them."""
-        if self._envelope.load_is_range and not self._polynomial:
-            return self._outcome("undecided", None, None, NO_RANGE)
         for V, F in self._hints():
             if self.count(V, F):
                 return self._refuted(V, F)
@@ -255,7 +262,7 @@ class _Proof:
         return self._outcome("refuted", (V, F), frequency, words)
 
     def _place(self, V: Q, F: Q) -> str:
-        return _place(V, F)
+        return place_words(self._study, (float(V), float(F)))
 
     def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
         envelope, place = self._envelope, None if point is None else (float(point[0]), float(point[1]))
@@ -299,7 +306,7 @@ class _OverDamping(_Proof):
         return self._model_at(self._linear.factor(float(F))), self._load
 
     def _place(self, V: Q, F: Q) -> str:
-        return f"{_place(V, Q(*self._load.as_integer_ratio()))}, {float(self._linear.factor(F)):.6g} times the damping"
+        return f"{place_words(self._study, (float(V), self._load))}, {float(self._linear.factor(F)):.6g} times the damping"
 
     def _outcome(self, verdict: Any, point: tuple[Q, Q] | None, frequency: float | None, reason: str) -> Certificate:
         factor, place = None, None
@@ -307,10 +314,6 @@ class _OverDamping(_Proof):
             factor, place = float(self._linear.factor(point[1])), (point[0], Q(*self._load.as_integer_ratio()))
         made = super()._outcome(verdict, place, frequency, reason)
         return replace(made, method="balls, damping", damping=self._interval.factors, damping_factor=factor)
-
-
-def _place(V: Q, F: Q) -> str:
-    return f"{float(V):.6g} m/s, {float(F) / 1e3:.6g} kN"
 
 
 def _intervals(ends: tuple[Q, Q], ratio: float) -> list[tuple[Q, Q]]:

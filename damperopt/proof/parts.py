@@ -11,7 +11,7 @@ import flint
 from ..errors import CertificateError
 from ..stability.family import Powers, coefficients
 
-__all__ = ["parts_in_powers"]
+__all__ = ["inverse_of_powers", "parts_in_powers", "samples"]
 
 Q: TypeAlias = flint.fmpq
 
@@ -41,15 +41,14 @@ def parts_in_powers(
         If other powers occur.
     """
     low, high = speeds
-    # sampled in the envelope, at powers of two, which keep the numbers short
-    V_0 = _power_of_two(math.sqrt(float(low) * float(high)))
-    at_speeds = [V_0 * Q(2) ** (k - len(powers.speed) // 2) for k in range(len(powers.speed))]
+    at_speeds = samples(powers.speed, speeds)
+    V_0 = at_speeds[len(powers.speed) // 2]
     F_powers: tuple[int, ...] = (0,)
     at_loads = list(loads)[:1]
     if powers.load is not None:
         F_0 = _power_of_two(float(loads[-1]))
         F_powers, at_loads = powers.load, [F_0 / Q(2) ** k for k in range(len(powers.load))]
-    by_speed, by_load = _inverse(at_speeds, powers.speed), _inverse(at_loads, F_powers)
+    by_speed, by_load = inverse_of_powers(powers.speed, speeds), _inverse(at_loads, F_powers)
     sampled = [coefficients([matrix(V, F) for V in at_speeds], by_speed) for F in at_loads]
     parts = {
         (i, j): part
@@ -65,6 +64,17 @@ def parts_in_powers(
                 "F_z that its components declare: no certificate for this model"
             )
     return parts
+
+
+def samples(powers: Sequence[int], speeds: tuple[Q, Q]) -> list[Q]:
+    """Speeds in the envelope, as many as powers; powers of two, which keep the numbers short."""
+    V_0 = _power_of_two(math.sqrt(float(speeds[0]) * float(speeds[1])))
+    return [V_0 * Q(2) ** (k - len(powers) // 2) for k in range(len(powers))]
+
+
+def inverse_of_powers(powers: Sequence[int], speeds: tuple[Q, Q]) -> list[list[Q]]:
+    """Inverse of the matrix of powers of `samples`, as rows: what makes coefficients of values there."""
+    return _inverse(samples(powers, speeds), powers)
 
 
 def _power_of_two(value: float) -> Q:

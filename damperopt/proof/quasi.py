@@ -8,7 +8,7 @@ impedance is left in a denominator, since every compliance has its state.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -16,6 +16,7 @@ import casadi as ca
 import flint
 
 from ..errors import CertificateError
+from ..stability.family import Powers
 from ..stability.response import Structure
 from ..study.study import Study
 from ..symbols import data_values
@@ -23,19 +24,31 @@ from .balls import ball, enclosed
 from .damping import Interval, Linear, over_damping
 from .parts import parts_in_powers
 from .rationals import decimal, evaluate, rational
+from .varying import Varying
 
-__all__ = ["OverDamping", "Quasipolynomial", "Rows", "Slice", "Tyre"]
+__all__ = ["OverDamping", "Quasipolynomial", "Rows", "Slice", "Tyre", "UnlikeTyres"]
 
 Q: TypeAlias = flint.fmpq
 ONE, UNUSED = Q(1), flint.arb(1)
 Rows: TypeAlias = dict[tuple[int, int, int], flint.acb_poly]
+Kept: TypeAlias = dict[tuple[int, int, int], dict[int, flint.arb]]
 
 BITS = 128
 """Of coefficients, which are exact, and of the tyre's numbers as balls."""
 
 VARIABLES = ("s", "V", "F", "f", "m", "side", "swivel", "turn", "softness", "reach", "g")
-"""Those of the tyre from `SIDE` on; last what uncertain damping makes linear, see `proof.damping`."""
-SIDE = VARIABLES.index("side")
+"""Those of the tyre from ``side`` on; last what uncertain damping makes linear, see `proof.damping`. Entries of the structure
+that change with the load follow, see `proof.varying`."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term of D: its power of s, those (k, l, j) of f, m and V, and those of all else by position; and its coefficient."""
+
+    of_s: int
+    powers: tuple[int, int, int]
+    inner: Sequence[tuple[int, int]]
+    coefficient: flint.arb
 
 
 @dataclass(frozen=True)
@@ -94,6 +107,10 @@ class Slice:
         return flint.arb((self.loads[1] - self.loads[0]) / 2)
 
 
+class UnlikeTyres(CertificateError):
+    """The wheels of a gear do not share the numbers of one contact line."""
+
+
 class Quasipolynomial:
     """D of one study and design.
 
@@ -121,35 +138,48 @@ class Quasipolynomial:
         self._study, self._structure, self._design = study, structure, design
         self._data = [decimal(value) for value in data_values(study)]
         self.degree = len(structure.states) + structure.wheels
-        self._kept: dict[Q | None, list[Any]] = {}
-        self._slope_of_damping: dict[Q | None, list[Any]] = {}
+        self._kept: dict[Q | None, list[Term]] = {}
+        envelope = study.envelope
+        self._speeds = decimal(envelope.speed.min), decimal(envelope.speed.max)
+        self._varying: Varying | None = None
+        if structure.powers.load is None and envelope.load_is_range:
+            own = {name: design[name] for name in structure.design_names}
+            self._varying = Varying(structure.system, own, structure.powers.speed, self._speeds)
+        self._names = (*VARIABLES, *(f"entry_{k}" for k in range(len(self._entries))))
         load, data = ca.SX.sym("load"), ca.SX.sym("data", len(self._data))
         assert structure.footprint is not None
         row = structure.footprint(load, data)
-        if not ca.is_equal(row, ca.repmat(row[0, :], structure.wheels, 1), 100) and structure.wheels > 1:
-            raise CertificateError("the wheels of this gear have tyres of their own: no certificate with contact memory")
+        if structure.wheels > 1 and not ca.is_equal(row, ca.repmat(row[0, :], structure.wheels, 1), 100):
+            raise UnlikeTyres("the wheels of this gear have unlike tyres, and a proof with contact memory needs them alike")
         self._interval = Interval.of(study)
         self.linear: Linear | None = None
         self._numbers = ca.Function("numbers", [load, data], [ca.densify(row[0, :])])
         self._slopes = ca.Function("slopes", [load, data], [ca.densify(ca.jacobian(row[0, :], load))])
 
+    @property
+    def _entries(self) -> list[tuple[int, int, int]]:
+        """Power of V, row and column of what is a variable of its own."""
+        return [] if self._varying is None else self._varying.keys
+
     def slice(self, low: Q, high: Q) -> Slice:
         """D between two loads [N], which may be one."""
         with flint.ctx.workprec(BITS):
             middle, over = flint.arb((low + high) / 2), ball(flint.arb(low), flint.arb(high))
-            terms, by_load = self._terms(low, high)
-            data = [flint.arb(value) for value in self._data]
+            terms, data = self._terms(low, high), [flint.arb(value) for value in self._data]
             at = Tyre.of(enclosed(self._numbers, [[middle], data]))
+            found, _ = _collected(terms, [middle, *at.others, UNUSED, *self._at(middle, data)], self.lift)
             if low == high:
-                found = self._collected(terms, middle, at)
                 return Slice((low, high), found, found, {}, at, at, at)
             across, change = (Tyre.of(enclosed(f, [[over], data])) for f in (self._numbers, self._slopes))
-            slope: Rows = {}
-            for derivative, factor in zip(by_load, (flint.arb(1), *change.others), strict=True):
-                for key, row in self._collected(derivative, over, across).items():
-                    slope[key] = slope.get(key, flint.acb_poly([0])) + row * flint.acb(factor)
-            found, spread = self._collected(terms, middle, at), self._collected(terms, over, across)
-            return Slice((low, high), found, spread, slope, at, across, change)
+            changes = [flint.arb(1), *change.others, flint.arb(0), *self._at(over, data, slopes=True)]
+            values = [over, *across.others, UNUSED, *self._at(over, data)]
+            return Slice((low, high), found, *_collected(terms, values, self.lift, changes), at, across, change)
+
+    def _at(self, load: flint.arb, data: list[flint.arb], slopes: bool = False) -> list[flint.arb]:
+        """Balls over the entries that are variables, or over their slopes."""
+        if self._varying is None:
+            return []
+        return self._varying.slopes(load, data) if slopes else self._varying.values(load, data)
 
     def over_damping(self, load: Q) -> OverDamping:
         """D at one load [N] as a function of speed and damping."""
@@ -161,64 +191,59 @@ class Quasipolynomial:
         """D at one load [N] between two values of what uncertain damping is linear in; the interval stands as `loads`."""
         with flint.ctx.workprec(BITS):
             F, over, middle = flint.arb(load), ball(flint.arb(low), flint.arb(high)), flint.arb((low + high) / 2)
-            terms, _ = self._terms(load, load)
+            terms = self._terms(load, load)
             tyre = Tyre.of(enclosed(self._numbers, [[F], [flint.arb(value) for value in self._data]]))
-            at = self._collected(terms, F, tyre, middle)
+            at, _ = _collected(terms, [F, *tyre.others, middle], self.lift)
             if low == high:
                 return Slice((low, high), at, at, {}, tyre, tyre, tyre)
             still = Tyre.of([flint.arb(0)] * 12)
-            slope = self._collected(self._by_damping(load), F, tyre, over)
-            return Slice((low, high), at, self._collected(terms, F, tyre, over), slope, tyre, tyre, still)
+            changes = [flint.arb(0)] * (1 + len(still.others)) + [flint.arb(1)]
+            return Slice((low, high), at, *_collected(terms, [F, *tyre.others, over], self.lift, changes), tyre, tyre, still)
 
-    def _by_damping(self, load: Q) -> list[Any]:
-        """Terms of the derivative of D to g."""
-        key = None if self._structure.powers.load is not None else load
-        if key not in self._slope_of_damping:
-            self._slope_of_damping[key] = list(_with_balls(self._kept[key][0].derivative("g")))
-        return self._slope_of_damping[key]
-
-    def _terms(self, low: Q, high: Q) -> tuple[list[Any], list[list[Any]]]:
-        """Terms of D, and of its derivatives to F and to the numbers of the tyre that are not in f and m."""
-        key = None if self._structure.powers.load is not None else low
+    def _terms(self, low: Q, high: Q) -> list[Term]:
+        """Terms of D; at one load alone where they hang on it."""
+        key = None if self._structure.powers.load is not None or self._varying is not None else low
         if key not in self._kept:
             if key is not None and low != high:
                 raise CertificateError("the structure of this gear is no polynomial in the load")
-            self._kept[key] = [self._expanded([low, high] if key is None else [low])]
-        polynomial = self._kept[key][0]
-        if len(self._kept[key]) == 1:
-            self._kept[key] += [list(_with_balls(polynomial)), []]
-        if low != high and not self._kept[key][2]:
-            variables = ("F", *VARIABLES[SIDE:-1])
-            self._kept[key][2] = [list(_with_balls(polynomial.derivative(name))) for name in variables]
-        return self._kept[key][1], self._kept[key][2]
+            self._kept[key] = list(_with_balls(self._expanded([low, high] if key is None else [low])))
+        return self._kept[key]
 
     def _expanded(self, loads: list[Q]) -> flint.fmpq_mpoly:
         """D over the rationals."""
         structure = self._structure
         parts = self._parts(loads)
-        ring = flint.fmpq_mpoly_ctx.get(VARIABLES, "lex")
-        s, V, F, f, m, side, swivel, turn, softness, reach, g = ring.gens()
+        ring = flint.fmpq_mpoly_ctx.get(self._names, "lex")
+        s, V, F, f, m, side, swivel, turn, softness, reach, g, *entries = ring.gens()
         zero, n, w = ring.constant(0), len(structure.states), structure.wheels
         size = n + 2 * w
+        own = dict(zip(self._entries, entries, strict=True))
         lift = [
-            max([0, *(-i for (i, _, _), part in parts.items() if any(part[r, c] != 0 for c in range(size)))]) for r in range(n)
+            max(
+                0,
+                *(-i for (i, _, _), part in parts.items() if any(part[r, c] != 0 for c in range(size))),
+                *(-i for i, row, _ in own if row == r),
+            )
+            for r in range(n)
         ]
         self.lift = sum(lift)
 
-        def entry(r: int, c: int) -> Any:
-            """Of the system, times the power of V that clears its row."""
+        def entry(r: int, c: int, raised: int) -> Any:
+            """Of the system, times a power of V."""
             terms = [(key, part[r, c]) for key, part in parts.items() if part[r, c] != 0]
-            return sum((V ** (i + lift[r]) * F**j * g**k * value for (i, j, k), value in terms), zero)
+            found = sum((V ** (i + raised) * F**j * g**k * value for (i, j, k), value in terms), zero)
+            return found + sum((V ** (i + raised) * value for (i, *place), value in own.items() if place == [r, c]), zero)
 
-        rows = [[(V ** lift[r] * s if r == c else zero) - entry(r, c) for c in range(n)] + [zero] * w for r in range(n)]
+        rows = [
+            [(V ** lift[r] * s if r == c else zero) - entry(r, c, lift[r]) for c in range(n)] + [zero] * w for r in range(n)
+        ]
+        below = [part[r, c] != 0 for key, part in parts.items() if key != (0, 0, 0) for r in range(n, size) for c in range(n)]
+        if any(below) or any(i != 0 and r >= n for i, r, _ in own):
+            raise CertificateError("position or swivel of a wheel hangs on the speed in the linear model")
         for k in range(w):
-            eta, theta = ([parts[0, 0, 0][n + 2 * k + q, c] for c in range(n)] for q in (0, 1))
-            if any(
-                part[n + 2 * k + q, c] != 0 for key, part in parts.items() if key != (0, 0, 0) for q in (0, 1) for c in range(n)
-            ):
-                raise CertificateError("position or swivel of a wheel hangs on speed or load in the linear model")
+            eta, theta = ([entry(n + 2 * k + q, c, 0) for c in range(n)] for q in (0, 1))
             for r in range(n):
-                B_F, B_M = entry(r, n + 2 * k), entry(r, n + 2 * k + 1)
+                B_F, B_M = (entry(r, n + 2 * k + q, lift[r]) for q in (0, 1))
                 for c in range(n):
                     if eta[c] != 0 or theta[c] != 0:
                         rows[r][c] += B_F * (side * eta[c] + swivel * theta[c]) - B_M * (turn * theta[c])
@@ -231,12 +256,14 @@ class Quasipolynomial:
         """Matrices of V^i F^j g^k of the system."""
         structure, study = self._structure, self._study
         exact = {name: rational(self._design[name]) for name in structure.design_names}
-        speeds = decimal(study.envelope.speed.min), decimal(study.envelope.speed.max)
+        speeds = self._speeds
 
         def system(V: Q, F: Q, factor: Q = ONE) -> flint.fmpq_mat:
             values = list(study.damper.with_damping(exact, factor).values())
             return flint.fmpq_mat(evaluate(structure.system, [values, [V], [F], self._data]))
 
+        if self._varying is not None:
+            return self._still(system, loads)
         whole = parts_in_powers(system, structure.powers, speeds, loads)
         if self._interval is None:
             return {(i, j, 0): part for (i, j), part in whole.items()}
@@ -258,22 +285,15 @@ class Quasipolynomial:
             )
         return found
 
-    def _collected(self, terms: Sequence[Any], load: flint.arb, tyre: Tyre, g: flint.arb = UNUSED) -> Rows:
-        """By powers of f, m and V polynomials in lambda, with load, tyre and damping put in."""
-        values = (load, *tyre.others, g)
-        found: dict[tuple[int, int, int], dict[int, flint.arb]] = {}
-        powers: dict[tuple[int, int], flint.arb] = {}
-        for exponents, coefficient in terms:
-            i, j, in_F, k, l = exponents[:5]
-            for which, exponent in enumerate((in_F, *exponents[SIDE:])):
-                if exponent:
-                    if (which, exponent) not in powers:
-                        powers[which, exponent] = values[which] ** exponent
-                    coefficient = coefficient * powers[which, exponent]
-            row = found.setdefault((k, l, j - self.lift), {})
-            row[i] = row[i] + coefficient if i in row else coefficient
-        zero = flint.arb(0)
-        return {key: flint.acb_poly([row.get(i, zero) for i in range(max(row) + 1)]) for key, row in found.items()}
+    def _still(self, system: Any, loads: Sequence[Q]) -> dict[tuple[int, int, int], flint.fmpq_mat]:
+        """The same of the entries that do not hang on the load; that all keep their powers of V is shown at both its ends."""
+        assert self._varying is not None
+        speed = Powers(self._structure.powers.speed, None)
+        whole, *_ = (parts_in_powers(system, speed, self._speeds, [load]) for load in loads)
+        for r, c in self._varying.places:
+            for part in whole.values():
+                part[r, c] = Q(0)
+        return {(i, 0, 0): part for (i, _), part in whole.items()}
 
 
 @dataclass(frozen=True)
@@ -310,8 +330,49 @@ def _determinant(rows: list[list[Any]], ring: Any) -> Any:
     return minors[(1 << len(rows)) - 1]
 
 
-def _with_balls(polynomial: flint.fmpq_mpoly) -> Any:
-    """(exponents, coefficient as a ball) of every term."""
+def _with_balls(polynomial: flint.fmpq_mpoly) -> Iterator[Term]:
+    """Terms of D, their coefficients as balls."""
     with flint.ctx.workprec(BITS):
         for exponents, coefficient in polynomial.terms():
-            yield tuple(map(int, exponents)), flint.arb(coefficient)
+            i, j, in_F, k, l, *others = map(int, exponents)
+            inner = [(which, power) for which, power in enumerate((in_F, *others)) if power]
+            yield Term(i, (k, l, j), inner, flint.arb(coefficient))
+
+
+def _collected(
+    terms: Sequence[Term], values: Sequence[flint.arb], lift: int, changes: Sequence[flint.arb] | None = None
+) -> tuple[Rows, Rows]:
+    """By powers of f, m and V polynomials in lambda, with all else put in; and their derivatives, where it changes.
+
+    Parameters
+    ----------
+    terms : sequence of Term
+    values : sequence of arb
+        Of load, tyre, damping and entries.
+    lift : int
+        Power of V that D was multiplied by.
+    changes : sequence of arb or None
+        Derivatives of the values; None: of none.
+    """
+    found: tuple[Kept, Kept] = {}, {}
+    powers: dict[tuple[int, int], tuple[flint.arb, flint.arb]] = {}
+    zero = flint.arb(0)
+    for term in terms:
+        value, change = term.coefficient, zero
+        for which, exponent in term.inner:
+            if (which, exponent) not in powers:
+                below = values[which] ** (exponent - 1)
+                by = zero if changes is None else exponent * below * changes[which]
+                powers[which, exponent] = below * values[which], by
+            power, by_power = powers[which, exponent]
+            if changes is not None:
+                change = change * power + value * by_power
+            value = value * power
+        k, l, j = term.powers
+        for rows, part in zip(found, (value, change) if changes is not None else (value,), strict=False):
+            row = rows.setdefault((k, l, j - lift), {})
+            row[term.of_s] = row[term.of_s] + part if term.of_s in row else part
+    first, second = (
+        {key: flint.acb_poly([row.get(i, zero) for i in range(max(row) + 1)]) for key, row in rows.items()} for rows in found
+    )
+    return first, second

@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ConfigError
 from ..quantities.named import State
 from ..tyres.string import transit
 from .gear import LinearGear, parts
@@ -32,13 +31,17 @@ SIDE, SWIVEL, TURN, SOFTNESS, REACH, LENGTH = range(6, 12)
 ORDERS = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 """Of the contact line as a field; the least is taken that holds 2 a w/V for the fastest motion w, and `BEYOND` more."""
 
-BEYOND = 6
+BEYOND, MOST = 6, 32
+"""Motions with more than `MOST` need no field: what the line remembers of them is small against its stiffness, by about
+2/(2 a w/V), and the structure on that stiffness alone gives the starts, from `OVERLAP` of the field's order on."""
+
+OVERLAP = 0.7
 
 NEWTON_STEPS, CONVERGED = 12, 1e-13
 """Of Newton's method; the last step relative to the root."""
 
-FAR = 1e-2
-"""Relative distance from its start above which Newton's method has found another root: the field was too coarse."""
+FAR, ALONE = 1e-2, 0.1
+"""Relative distance from its start, of a field and of the stiffness alone, from which on Newton's method found another root."""
 
 
 SPARE = 4
@@ -205,10 +208,10 @@ class DelayGear(LinearGear):
         """Of the structure and the foremost contact points: as many as there are roots when the delay vanishes."""
         return self.named
 
-    def modes(self, speeds: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-        """The rightmost eigenvalues (m, k) [1/s], some more than principal states, and how each state takes part, (m, n, k)."""
+    def modes(self, speeds: Any, loads: Any, spare: int = SPARE) -> tuple[np.ndarray, np.ndarray]:
+        """The rightmost eigenvalues (m, k) [1/s], `spare` more than principal states, and their states' parts (m, n, k)."""
         V, F_z = np.broadcast_arrays(np.atleast_1d(np.asarray(speeds, float)), np.asarray(loads, float))
-        values = self.roots(V, F_z, len(self.named) + SPARE)
+        values = self.roots(V, F_z, len(self.named) + spare)
         A, _ = self.frozen(V, F_z).at(values)
         n = A.shape[-1]
         near = (values + 1e-10 * (1 + np.abs(values)))[..., None, None] * np.eye(n) - A
@@ -287,28 +290,45 @@ def _orders(model: Frozen) -> np.ndarray:
     roots = np.linalg.eigvals(np.stack([rolling, model.A_0]))
     # what decays within a part of its turn needs no resolution
     fastest = np.where(roots.real > -np.abs(roots.imag), np.abs(roots), 0.0).max(axis=(0, 2))
-    turns = fastest * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds) + BEYOND
-    if (turns > ORDERS[-1]).any():
-        least = float((model.speeds * turns / ORDERS[-1]).max())
-        raise ConfigError(
-            f"tyre.contact: found the speed {model.speeds[turns.argmax()]:.4g} m/s, at which a motion of {fastest.max():.3g} "
-            f"rad/s has {turns.max():.0f} rad within the contact line; allowed with a delay: speeds from about {least:.3g} m/s"
-        )
-    return np.array(ORDERS)[np.searchsorted(ORDERS, turns)]
+    return np.array(ORDERS)[np.searchsorted(ORDERS, np.minimum(fastest * _delay(model) + BEYOND, MOST))]
+
+
+def _delay(model: Frozen) -> np.ndarray:
+    """2 a/V at each point, of the longest contact line [s]."""
+    return np.asarray(model.numbers[:, :, LENGTH].max(axis=1) / model.speeds)
 
 
 def _rightmost(model: Frozen, order: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """The rightmost roots (p, count), and at which points (p,) the field was fine enough to be sure of them."""
     starts = np.linalg.eigvals(model.fields(order)).astype(complex)
-    turns = np.abs(starts) * (model.numbers[:, :, LENGTH].max(axis=1) / model.speeds)[:, None]
-    resolved = turns <= order
+    resolved = np.abs(starts) * _delay(model)[:, None] <= order
     # what the field resolves comes first, from right to left
-    starts = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
-    resolved = np.sort(~resolved, axis=1)[:, :count] == 0
+    found = np.take_along_axis(starts, np.lexsort((-starts.real, ~resolved)), axis=1)[:, :count]
+    sure = (resolved.sum(axis=1) >= count) | (order == ORDERS[-1])  # elsewhere a finer field will tell
+    starts, resolved, model = found[sure], np.arange(count) < resolved[sure].sum(axis=1)[:, None], model.taken(sure)
     roots, converged = _newton(model, starts)
-    fine = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
-    kept = np.where(fine, roots, starts)
-    return np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1), fine.all(axis=1)
+    met = converged & resolved & (np.abs(roots - starts) <= FAR * (1e-9 + np.abs(starts)))
+    kept, all_met = np.where(met, roots, starts), met.all(axis=1)
+    if order >= MOST:
+        beyond, none_missed = _beyond(model, order, kept)
+        kept, all_met = np.column_stack([kept, beyond]), all_met & none_missed
+    found[sure] = np.take_along_axis(kept, np.argsort(-kept.real, axis=1), axis=1)[:, :count]
+    sure[sure] = all_met
+    return found, sure
+
+
+def _beyond(model: Frozen, order: int, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots (p, n) too fast for a field, those that are none or `known` far to the left; and where all were found."""
+    starts = np.linalg.eigvals(model.A_0).astype(complex)
+    turns = np.abs(starts) * _delay(model)[:, None]
+    fast = (turns >= OVERLAP * order) & (starts.real > -np.abs(starts.imag))
+    if not fast.any():
+        return np.full(starts.shape, -np.inf + 0j), np.ones(len(starts), bool)
+    roots, converged = _newton(model, starts)
+    fine = converged & (np.abs(roots - starts) <= ALONE * np.abs(starts))
+    again = (np.abs(roots[:, :, None] - known[:, None, :]) <= 1e-8 * np.abs(roots)[:, :, None]).any(axis=2)
+    missed = fast & ~fine & (turns >= order)
+    return np.where(fast & fine & ~again, roots, -np.inf + 0j), ~missed.any(axis=1)
 
 
 def _newton(model: Frozen, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -66,7 +66,7 @@ def powers_of(study: Any) -> Powers:
     -------
     Powers
     """
-    return united(study.gear, study.tyre, getattr(study.tyre, "contact", study.tyre), study.damper)
+    return united(study.gear, study.tyre, getattr(study.tyre, "contact", study.tyre), study.damper, study.damper.actuator)
 
 
 def united(*parts: Any) -> Powers:
@@ -75,14 +75,16 @@ def united(*parts: Any) -> Powers:
     Parameters
     ----------
     *parts : object
-        Components, or others with `SPEED_POWERS` and `LOAD_POWERS`.
+        Components, or others with `SPEED_POWERS` and `LOAD_POWERS`, or `load_powers` of their own numbers; None: a part that
+        is not there.
 
     Returns
     -------
     Powers
     """
+    parts = tuple(part for part in parts if part is not None)
     speed = [getattr(part, "SPEED_POWERS", Powers.speed) for part in parts]
-    declared = [getattr(part, "LOAD_POWERS", Powers.load) for part in parts]
+    declared = [getattr(part, "load_powers", getattr(part, "LOAD_POWERS", Powers.load)) for part in parts]
     load = [powers for powers in declared if powers is not None]
     polynomial = tuple(sorted({0, *itertools.chain(*load)})) if len(load) == len(declared) else None
     return Powers(tuple(sorted({0, *itertools.chain(*speed)})), polynomial)

@@ -56,8 +56,11 @@ class LinearGear:
         """Declarations of the states that modes are named by: all of them."""
         return self.states
 
-    def modes(self, speeds: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues (m, k) [1/s], and how each principal state takes part in them (left times right vector), (m, n, k)."""
+    def modes(self, speeds: Any, loads: Any, spare: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues (m, k) [1/s], and how each principal state takes part in them (left times right vector), (m, n, k).
+
+        There are as many as principal states; with a delay, which has roots without end, and `spare` is how many more.
+        """
         values, right = np.linalg.eig(self.matrices(speeds, loads))
         # pinv, since a defective matrix (coincident roots) has no inverse of its eigenvectors
         return values, parts(np.linalg.pinv(right).transpose(0, 2, 1) * right)

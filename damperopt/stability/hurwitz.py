@@ -7,7 +7,6 @@ expressions, since only +, - and * are used.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 from math import comb
 from typing import Any
 
@@ -24,7 +23,7 @@ __all__ = [
 
 
 def characteristic_polynomial(A: Any) -> list[Any]:
-    """Coefficients of det(s I - A): a_k is (-1)^k times the sum of the principal minors of order k.
+    """Coefficients of det(s I - A), by expansion along the rows, each minor once and as a polynomial in s.
 
     Parameters
     ----------
@@ -47,12 +46,32 @@ def characteristic_polynomial(A: Any) -> list[Any]:
     [1.0, 0.6, 4.0]
     """
     rows = _entries(A)
-    n = len(rows)
-    coefficients: list[Any] = [1.0]
-    for k in range(1, n + 1):
-        minors = (determinant([[rows[i][j] for j in chosen] for i in chosen]) for chosen in combinations(range(n), k))
-        coefficients.append((-1) ** k * sum(minors))
-    return coefficients
+    known: dict[tuple[int, ...], list[Any]] = {(): [1.0]}
+
+    def minor(columns: tuple[int, ...]) -> list[Any]:
+        """Of the last rows of s I - A, as many as there are columns: coefficients of s^0, s^1, ..."""
+        row = len(rows) - len(columns)
+        if columns not in known:
+            total: list[Any] = [0] * (len(columns) + 1)
+            for j, c in enumerate(columns):
+                if c != row and _is_zero(rows[row][c]):
+                    continue
+                for k, value in enumerate(minor((*columns[:j], *columns[j + 1 :]))):
+                    if _is_zero(value):
+                        continue
+                    if not _is_zero(rows[row][c]):
+                        total[k] = total[k] - (-1) ** j * rows[row][c] * value
+                    if c == row:
+                        total[k + 1] = total[k + 1] + (-1) ** j * value
+            known[columns] = total
+        return known[columns]
+
+    return minor(tuple(range(len(rows))))[::-1]
+
+
+def _is_zero(entry: Any) -> bool:
+    """Whether an entry is the literal 0."""
+    return isinstance(entry, int) and entry == 0
 
 
 def _entries(A: Any) -> list[list[Any]]:
@@ -87,7 +106,7 @@ def determinant(rows: Sequence[Sequence[Any]]) -> Any:
         if columns not in known:
             total: Any = 0
             for j, c in enumerate(columns):
-                if not (isinstance(row[c], int) and row[c] == 0):
+                if not _is_zero(row[c]):
                     total = total + (-1) ** j * row[c] * minor((*columns[:j], *columns[j + 1 :]))
             known[columns] = total
         return known[columns]

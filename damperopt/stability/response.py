@@ -53,7 +53,11 @@ class _Pushed:
         F, M = (ca.SX.sym(f"{name}_{len(self.wheels)}") for name in ("F_y", "M_z"))
         self.inputs += [F, M]
         self.wheels.append(wheel)
-        return Contact((), F, M + self.tyre.tread_width_moment * wheel.swivel_rate / wheel.speed, wheel=wheel)
+        M_kappa = self.tyre.tread_width_moment * wheel.swivel_rate / wheel.speed
+        own = self.tyre.of_wheel(wheel)
+        linear = Linear(*own.linear(wheel.load, own.pressure))
+        K_y = self.tyre.contact.side_stiffness(linear)
+        return Contact((), F, M + M_kappa, deflection=None if K_y is None else F / K_y, wheel=wheel)
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,8 @@ class Structure:
         )
         system = ca.densify(f_v - f_z @ ca.inv_minor(g_z) @ g_v if dae.z.numel() else f_v)
         self.system = ca.Function("system", [dae.design, dae.speed, dae.load, dae.data], [system])
-        self.design_names, self.powers = dae.design_names, united(study.gear, study.damper, _TreadWidth)
+        parts = study.gear, study.damper, study.damper.actuator, _ground(study)
+        self.design_names, self.powers = dae.design_names, united(*parts)
         self._data = ca.DM(data_values(study))
         self.footprint = None
         line: Any = symbols.study.tyre.contact
@@ -143,7 +148,8 @@ class Structure:
 
 
 def _numbers(line: StringLine, tyre: Any, wheel: Wheel) -> ca.SX:
-    part = line.footprint(Linear(*tyre.linear(wheel.load, tyre.pressure)))
+    own = tyre.of_wheel(wheel)
+    part = line.footprint(Linear(*own.linear(wheel.load, own.pressure)))
     values = (getattr(part, field.name) for field in fields(part))
     return ca.horzcat(*(ca.SX(x) for value in values for x in (value if isinstance(value, tuple) else (value,))))
 
@@ -152,4 +158,15 @@ class _TreadWidth:
     """What the moment of the tread width, kappa theta'/V, brings in."""
 
     SPEED_POWERS: ClassVar = (-1, 0)
-    LOAD_POWERS: ClassVar = (0,)
+    LOAD_POWERS: ClassVar[tuple[int, ...] | None] = (0,)
+
+
+class _Deflected(_TreadWidth):
+    """The same, and the tyre's stiffness at its load in a denominator."""
+
+    LOAD_POWERS: ClassVar = None
+
+
+def _ground(study: Study) -> type[_TreadWidth]:
+    drag = getattr(study.gear, "drag", None)
+    return _Deflected if drag is not None and drag.lateral_stiffness is None else _TreadWidth

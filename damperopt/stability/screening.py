@@ -42,11 +42,15 @@ class Screening:
     Parameters
     ----------
     study : Study
-        Its damper has no part in it.
+        Its damper has no part in it, nor has an actuator.
     """
 
     def __init__(self, study: Study):
-        bare = study.replace(damper={"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0})
+        bare = study.replace(
+            damper={"topology": "rotational", "torsional_stiffness": 0.0, "torsional_damping": 0.0},
+            **({"requirements__fail_safe_margin": None} if study.requirements else {}),
+            **({"gear__strut__torsional_stiffness": None} if study.gear.strut else {}),  # in the place of what is asked
+        )
         self._study, self._model = study, LinearModel(bare)
         self._data = dict(zip(data_names(bare), data_values(bare), strict=True))
 

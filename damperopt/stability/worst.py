@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy.ndimage import maximum_filter
@@ -15,7 +16,7 @@ from .delay import DelayGear
 from .delay_line import PER_DECADE
 from .gear import LinearGear
 
-__all__ = ["worst_points"]
+__all__ = ["top_of", "tops_of", "worst_points"]
 
 LOADS = 9
 """Loads of the first look at a load range, spaced evenly, and as many spaced geometrically."""
@@ -126,16 +127,27 @@ def _refined_in_box(gear: LinearGear, start: tuple[float, float], box: list[tupl
     return max(point(first), point(best.x), key=lambda p: p.abscissa)
 
 
-def _peaks(height: np.ndarray) -> list[int]:
+def tops_of(height: np.ndarray) -> list[int]:
     """Indices of the local maxima of a sequence, its ends included."""
     return [i for i in range(len(height)) if height[i] >= height[max(i - 1, 0) : i + 2].max()]
 
 
-def _zoomed(gear: LinearGear, load: float, left: float, right: float) -> float:
-    """Speed of a maximum of the abscissa by rows of speeds that close in on it, for gears that are quicker in rows."""
+def top_of(height: Callable[[np.ndarray], np.ndarray], left: float, right: float) -> float:
+    """Where a function has a maximum, by rows of arguments that close in on it: for what is quicker in rows.
+
+    Parameters
+    ----------
+    height : callable
+        (m,) arguments to (m,) values.
+    left, right : float
+
+    Returns
+    -------
+    float
+    """
     for _ in range(ZOOMS):
         row = np.linspace(left, right, ROW)
-        top = int(gear.abscissa(row, load).argmax())
+        top = int(height(row).argmax())
         left, right = row[max(top - 1, 0)], row[min(top + 1, ROW - 1)]
     return float(row[top])
 
@@ -151,7 +163,7 @@ def _worst_at_load(
 
     def refined(left: float, right: float) -> OperatingPoint:
         if delayed:
-            return point(_zoomed(gear, load, left, right))
+            return point(top_of(lambda V: gear.abscissa(V, load), left, right))
         best = minimize_scalar(
             lambda V: -gear.abscissa(V, load)[0], bounds=(left, right), method="bounded", options={"xatol": 1e-8 * right}
         )
@@ -164,9 +176,9 @@ def _worst_at_load(
     speeds[0], speeds[-1] = low, high
     height = gear.abscissa(speeds, load)
     if delayed and height.max() > enough:
-        found = [OperatingPoint(float(speeds[i]), float(load), float(height[i])) for i in _peaks(height)]
+        found = [OperatingPoint(float(speeds[i]), float(load), float(height[i])) for i in tops_of(height)]
         return sorted(found, key=lambda p: -p.abscissa)
-    found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in _peaks(height)]
+    found = [refined(speeds[max(i - 1, 0)], speeds[min(i + 1, samples - 1)]) for i in tops_of(height)]
 
     if delayed:
         return sorted(found, key=lambda p: -p.abscissa)

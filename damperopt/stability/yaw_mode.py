@@ -60,7 +60,7 @@ def yaw_modes(gear: LinearGear, speeds: Any, loads: Any) -> np.ndarray:
     >>> f"{s:.2f}"
     '1.32+70.87j'
     """
-    roots, shares = gear.modes(speeds, loads)
+    roots, shares = gear.modes(speeds, loads, 1)  # the last may be the lower half of a pair
     names = [state.name for state in gear.principal]
     part = shares[:, names.index("yaw_angle")] + shares[:, names.index("yaw_rate")]
     # a line with memory has roots of its own without end; those of the gear are the rightmost, as many as without it

@@ -60,7 +60,9 @@ class Spectrum(Record):
 
 def words_of(spectrum: Spectrum) -> str:
     """The spectrum in a sentence, which says where it is the typical one."""
-    counts = f"{spectrum.turns:g} turns, {spectrum.tows:g} tows and {spectrum.landings:g} landing transients a flight"
+    named = (spectrum.turns, "turn"), (spectrum.tows, "tow"), (spectrum.landings, "landing transient")
+    turns, tows, landings = (f"{count:g} {name}{'' if count == 1 else 's'}" for count, name in named)
+    counts = f"{turns}, {tows} and {landings} a flight"
     given = "typical spectrum, of no aircraft" if spectrum == Spectrum() else "spectrum as given"
     return f"{given}: {spectrum.flights:g} flights with {counts}, scatter factor {spectrum.scatter_factor:g} on life"
 

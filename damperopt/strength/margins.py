@@ -203,13 +203,12 @@ class Lug:
 
 
 def lug_margins(
-    part: str, case: str, force: Expr, lug: Lug, material: Any, factors: tuple[Expr, Expr, Expr] = (1.5, 1.0, 1.5)
+    part: str, case: str, force: Expr, lug: Lug, material: Any, factors: tuple[Expr, Expr] = (1.5, 1.0)
 ) -> list[Margin]:
-    """Bearing, shear-out, net tension of a lug at ultimate load, and its edge distance.
+    """Bearing, shear-out and net tension of a lug at ultimate load.
 
     Shear-out on two planes of length e - D/2, the shortest; net tension without stress concentration, as a
-    ductile metal ruptures.
-    An edge distance below 1.5 bores fails as its own check, as bearing strengths are not for it.
+    ductile metal ruptures. Bearing strengths are for edge distances of 1.5 bores and more, which `mass.lug` asks of its eyes.
 
     Parameters
     ----------
@@ -219,9 +218,9 @@ def lug_margins(
     lug : Lug
     material : Material
     factors : tuple of Expr
-        Ultimate over limit load, a fitting factor beside it, and the least edge distance in bores.
+        Ultimate over limit load, and a fitting factor beside it.
     """
-    ultimate, fitting, least_edge = factors
+    ultimate, fitting = factors
     factor = ultimate * fitting
     shear = force / (2 * lug.thickness * (lug.edge - lug.bore / 2))
     tension = force / ((lug.width - lug.bore) * lug.thickness)
@@ -229,7 +228,6 @@ def lug_margins(
         Margin(part, "bearing", case, "ultimate", force / (lug.bore * lug.thickness), bearing_strength(material), factor),
         Margin(part, "shear-out", case, "ultimate", shear, shear_strength(material), factor),
         Margin(part, "net tension", case, "ultimate", tension, ultimate_stress(material), factor),
-        Margin(part, "edge distance", case, "limit", least_edge * lug.bore, lug.edge, unit="m"),
     ]
 
 

@@ -11,11 +11,12 @@ from ..ports.sizing import LimitEvent
 from .buckling import least_lateral_inertia, local_buckling_stress, weak_axis
 from .fatigue import Basquin, FlightStresses, life_damage
 from .materials import allowable_stress, ultimate_stress
-from .sections import area, area_for_modulus, inertia_for_modulus, section_modulus, shape_numbers
+from .sections import area, area_for_modulus, section_modulus, shape_numbers
 
 __all__ = [
     "allowables",
     "belleville_mass",
+    "belleville_stress",
     "distance",
     "fatigue_ratio",
     "least_sections",
@@ -90,7 +91,10 @@ def fatigue_ratio(member: Member, stress: Expr, event: LimitEvent, study: Any) -
         return None
     shares = event.flight
     turn, tow = (0.0, 0.0) if member.load == "damper_force" else (shares.turn * stress, shares.tow * stress)
-    stresses = FlightStresses(turn, tow, shares.landing * stress, shares.decay)
+    return _life_ratio(FlightStresses(turn, tow, shares.landing * stress, shares.decay), study, law)
+
+
+def _life_ratio(stresses: FlightStresses, study: Any, law: Basquin) -> Expr:
     return life_damage(stresses, study.requirements.fatigue.spectrum, law) ** -law.exponent
 
 
@@ -114,10 +118,10 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
     allowed = allowables(study.material, event, section, "bending" if member.area is None else "axial")
     if member.area is None:
         lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
-        found = {name: inertia_for_modulus(section, load * lever / stress) for name, stress in allowed.items()}
+        stress = root_stress_of_force(member, load, study)
+        found = {name: member.inertia * (stress / most) ** (4 / 3) for name, most in allowed.items()}
         tipped = least_lateral_inertia(section, study.material, event.ultimate_factor * load * lever, lever)
         found |= {} if tipped is None else {"lateral": tipped}
-        stress = load * lever / section_modulus(section, member.inertia)
         ratio = fatigue_ratio(member, stress, event, study)
         return found if ratio is None else found | {"fatigue": member.inertia * ratio ** (4 / 3)}
     force, length = load * member.share, distance(member.start, member.end) if member.length is None else member.length
@@ -136,7 +140,7 @@ def least_sections(member: Member, event: LimitEvent, study: Any) -> dict[str, E
 
 
 def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:
-    """Bending stress at the root of an arm at the limit event [Pa] (3 E eps h_f/R^2).
+    """Largest stress at the root of a member that bends, and is pushed, at the limit event [Pa] (3 E eps h_f/R^2 of an arm).
 
     Parameters
     ----------
@@ -151,11 +155,25 @@ def root_stress(member: Member, event: LimitEvent, study: Any) -> Expr:
 def root_stress_of_force(member: Member, force: Expr, study: Any) -> Expr:
     """The same for a force at its tip [N]."""
     lever = distance(member.start, member.end) if member.bending_length is None else member.bending_length
-    return force * lever / section_modulus(getattr(study.mass, member.section), member.inertia)
+    section = getattr(study.mass, member.section)
+    bending = force * lever / section_modulus(section, member.inertia)
+    if isinstance(member.thrust, (int, float)) and member.thrust == 0:
+        return bending
+    return bending + force * member.thrust / area(section, member.inertia)
+
+
+def belleville_stress(event: LimitEvent, study: Any) -> Expr:
+    """Stress that a Belleville stack is sized for at the limit event [Pa]: yield, rupture, or the spectrum of flights."""
+    steel, shares = study.mass.damper_material, event.flight
+    sigma, law = allowable_stress(steel, event.safety_factor, event.ultimate_factor), Basquin.of(steel)
+    if law is None or shares is None:
+        return sigma
+    turn, tow, landing = (share * sigma for share in (shares.turn, shares.tow, shares.landing))
+    ratio = _life_ratio(FlightStresses(turn, tow, landing, shares.decay), study, law)
+    return where(ratio > 1, sigma / ratio, sigma)
 
 
 def belleville_mass(event: LimitEvent, study: Any) -> Expr:
     """Mass of a Belleville stack [kg]: energy over eta sigma^2/(2 E) per volume."""
-    steel = study.mass.damper_material
-    sigma = allowable_stress(steel, event.safety_factor, event.ultimate_factor)
+    steel, sigma = study.mass.damper_material, belleville_stress(event, study)
     return steel.density * event.spring_energy / (study.mass.spring_utilisation * sigma**2 / (2 * steel.youngs_modulus))

@@ -129,6 +129,7 @@ DERIVED = {
     "yaw_acceleration": "rad/s^2",
     "arm_stress": "Pa",
     "unclosed": "m",
+    "strut_stroke": "m",
     "mass": "kg",
     "speed": "m/s",
     "vertical_load": "N",

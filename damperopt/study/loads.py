@@ -80,6 +80,10 @@ class GroundLoads(Record):
     """Cases by name: true or false, or numbers other than the rule's, or cases of one's own (kind: given); a list names the
     only ones that count."""
 
+    def constants(self) -> tuple[str, ...]:
+        """The numbers of a rule."""
+        return ("cases",)
+
     @model_validator(mode="after")
     def _enabled_with_numbers(self) -> Self:
         for name, case in self.cases.items():
@@ -112,10 +116,12 @@ class GroundLoads(Record):
         at_rest = {state.name: 0.0 for state in gear.states()}
         wheels = gear.wheels(at_rest, study.envelope.speed.max, load)
         half_track = getattr(getattr(gear, "axle", None), "half_track", 0.0)
-        side, moment, _, a = tyre.linear(wheels[0].load, tyre.pressure)
+        tyres = [tyre.of_wheel(wheel) for wheel in wheels]
+        side, moment, _, a = tyres[0].linear(wheels[0].load, tyres[0].pressure)
         # a trail beyond the footprint is no trail of a tyre
         trail = a if not is_symbol(side) and side == 0 else larger(0.0, where(moment < a * side, moment / side, a))
-        peaks, e_eff = [tyre.peaks(wheel.load, tyre.pressure) for wheel in wheels], gear.lever()
+        peaks = [own.peaks(wheel.load, own.pressure) for own, wheel in zip(tyres, wheels, strict=True)]
+        e_eff = gear.lever()
         of_wheels = [None if of is None else of.aligning_moment + absolute(e_eff) * of.side_force for of in peaks]
         return Context(
             largest_vertical=load,

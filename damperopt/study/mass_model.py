@@ -16,6 +16,9 @@ __all__ = ["MassModel"]
 _TUBE = Section(family="tube", thickness_ratio=0.1)
 
 
+LEAST_EDGE = 1.5
+"""Edge distance over bore from which on bearing strengths hold."""
+
 _Ratio = Annotated[float, Quantity("1", above=0, example="0.6")]
 
 
@@ -29,9 +32,18 @@ class LugModel(Record):
     width: _Ratio = 1.4
     """[1]"""
     edge: _Ratio = 0.95
-    """From the middle of the bore to the free end [1]."""
+    """From the middle of the bore to the free end, at least 1.5 bores [1]."""
     fitting_factor: Annotated[float, Quantity("1", at_least=1)] = 1.15
     """On ultimate loads of lugs; 1.15 is usual [1]."""
+
+    @model_validator(mode="after")
+    def _bearing_strengths_hold(self) -> Self:
+        if self.edge < LEAST_EDGE * self.bore * (1 - 1e-9):
+            what = f"{self.edge:g} is {self.edge / self.bore:.3g} bores, for which no bearing strength holds"
+            raise refuse("edge", what, f"{LEAST_EDGE:g} bores ({LEAST_EDGE * self.bore:g}), or more")
+        if self.width <= self.bore:
+            raise refuse("width", f"{self.width:g} leaves nothing beside the bore", f"more than the bore, {self.bore:g}")
+        return self
 
 
 class MassModel(Record):
@@ -43,6 +55,8 @@ class MassModel(Record):
     """Cross-section of the torque links."""
     support_section: Section = _TUBE
     """Cross-section of the support arm."""
+    hinge_section: Section = _TUBE
+    """Cross-section of the beams between the feet of torque links and support."""
     cantilever_taper: Annotated[float, Quantity("1", above=0, at_most=1)] = 0.6
     """Mass of a tapered link or support over the prismatic one; 3/5 is exact for uniform stress in one shape."""
     link_fittings_fraction: Fraction = 0.2

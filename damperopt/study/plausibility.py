@@ -202,8 +202,10 @@ def implausible_masses(parts: Mapping[str, float]) -> list[Implausible]:
 
 def _of_tyre(study: Study) -> Iterator[Implausible]:
     tyre, radius = study.tyre, study.gear.wheel_radius
-    on_wheels = sorted({own for load in study.envelope.loads for own in study.wheel_loads(load)})
-    numbers = ((load, *tyre.linear(load, tyre.pressure)) for load in on_wheels)
+    on_wheels = {(own, of.pressure): of for load in study.envelope.loads for own, of in study.on_wheels(load)}
+    numbers = (
+        (load, *of.linear(load, of.pressure)) for (load, _), of in sorted(on_wheels.items(), key=lambda item: item[0][0])
+    )
     at_loads = [[math.nan if x is None else float(x) for x in row] for row in numbers]  # a line may do without sigma
     seen: set[tuple[float, ...]] = set()
     if own := tyre.radius():

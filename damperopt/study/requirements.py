@@ -23,7 +23,7 @@ from ..reading import quoted
 from ..strength.fatigue import Spectrum
 from .disturbances import Disturbance, Kick, Release
 
-__all__ = ["DecayRequirement", "Fatigue", "Requirements"]
+__all__ = ["DecayRequirement", "Fatigue", "LargestLimitCycle", "Requirements"]
 
 
 _FRACTION = re.compile(r"\s*(0|[1-9][0-9]{0,8})\s*/\s*([1-9][0-9]{0,8})\s*")
@@ -97,15 +97,39 @@ class DecayRequirement(Record):
         return Disturbance(release=self.release, kick=self.kick)
 
 
+class LargestLimitCycle(Record):
+    """No stable limit cycle of more yaw than this at any speed and load, with the play that is stated.
+
+    It is checked after the optimisation, from motions by continuation; the optimiser does not see it.
+    """
+
+    yaw_angle: Annotated[float, Quantity("rad", above=0, below=1.0, example="0.1 deg")]
+    """Largest amplitude of a stable limit cycle [rad]."""
+    speeds: list[Speed] | None = None
+    """Speeds to look at [m/s]; left out: every speed of the envelope that the branches pass."""
+    gap: Length | None = None
+    """Play of the apex joint to one side [m]; left out: that of damper.freeplay, or none."""
+
+    @model_validator(mode="after")
+    def _some_speeds(self) -> Self:
+        if self.speeds is not None and not self.speeds:
+            raise refuse("speeds", "an empty list", "one speed or more, or leave it out")
+        return self
+
+
 class Requirements(Record):
     """What a design must meet; limits are inclusive."""
 
     stability_margin: Rate
     """Spectral abscissa <= -stability_margin at every speed and load [1/s]."""
+    fail_safe_margin: Rate | None = None
+    """The same with the actuator of `damper.control` off, proved for itself [1/s]; left out: 0."""
     damping_ratio: Annotated[float, Quantity("1", above=0, below=1, example="0.05")] | None = None
     """Least damping ratio of the yaw mode at every speed and load [1]; left out: none is asked for."""
     decay: DecayRequirement | None = None
     """On the nonlinear model, at every speed and load, after a release or a kick."""
+    largest_limit_cycle: LargestLimitCycle | None = None
+    """Largest limit cycle with the stated play; left out: none is looked for."""
     limit_event: Literal["torque", "simulated"] = "torque"
     """What the parts must carry: a yaw torque, or the peaks of the motions that the decay requirement looks at."""
     limit_torque: Torque | None = None

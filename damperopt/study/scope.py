@@ -7,7 +7,7 @@ from typing import Any
 from ..quantities.temperature import ZERO_CELSIUS
 from .study import Study
 
-__all__ = ["covers", "leaves_out"]
+__all__ = ["covers", "leaves_out", "place_words"]
 
 
 def covers(study: Study) -> list[str]:
@@ -28,7 +28,8 @@ def covers(study: Study) -> list[str]:
         "The certificate covers the linear gear about straight rolling: small motions, joints in contact (no freeplay, no end "
         f"stop reached), no friction{linkage}, the tyre on its contact line {study.tyre.contact.contact}{_delay(study)}."
     ]
-    found += _uncertain(study)
+    found += _uncertain(study) + _stroke(study)
+    found += _controlled(damper)
     if words := study.tyre.origin():
         found.append(words)
     left = [("freeplay", damper.play), ("end stop", damper.stop), ("friction", study.gear.friction)]
@@ -42,6 +43,37 @@ def covers(study: Study) -> list[str]:
             "The parts are sized by the simulated motions alone: no load of ground handling remains (limit_event simulated)."
         )
     return found
+
+
+def _controlled(damper: Any) -> list[str]:
+    """What of a control is covered."""
+    if damper.control is None:
+        return []
+    if damper.actuator is None:
+        return [
+            "The law of damper.control commands a current, which the certificate does not hold: it is of the damper without."
+        ]
+    lag = "" if damper.control.lag is None else f" and the lag of {1e3 * damper.control.lag:g} ms"
+    return [
+        f"It holds the actuator with its gains at every speed{lag}, as long as it does not saturate; a second certificate is "
+        "of the gear with the actuator off."
+    ]
+
+
+def _stroke(study: Study) -> list[str]:
+    """At which strokes of the shock strut it holds, where the study has one."""
+    if study.gear.strut is None:
+        return []
+    light, heavy = min(study.envelope.loads), max(study.envelope.loads)
+    ends = [f"{1e3 * study.gear.stroke(load):.4g} mm at {load / 1e3:.4g} kN" for load in dict.fromkeys((light, heavy))]
+    words = f"At each load the shock strut stands in balance ({' to '.join(ends)}), and links, height and stiffness follow it"
+    return [f"{words}; its motion is no part of the gear (quasi-static). Parts are sized with it fully out."]
+
+
+def place_words(study: Study, point: tuple[float, float]) -> str:
+    """A speed [m/s] and a load [N], with the stroke of a shock strut in balance."""
+    stroke = "" if study.gear.strut is None else f", stroke {1e3 * float(study.gear.stroke(point[1])):.4g} mm"
+    return f"{point[0]:.6g} m/s, {point[1] / 1e3:.6g} kN{stroke}"
 
 
 def _uncertain(study: Study) -> list[str]:

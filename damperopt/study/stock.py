@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -12,9 +10,9 @@ from pydantic_core import CoreSchema
 
 from ..dampers.bought import CatalogueDamper
 from ..errors import ConfigError
-from ..quantities.record import Length, Record, quantity_of, refuse
-from ..quantities.units import number
-from ..reading import printable, quoted, text_of
+from ..quantities.record import Length, Record, refuse
+from ..reading import printable, quoted
+from .rows import row_of, rows_of
 
 __all__ = ["CATALOGUE", "Available", "CatalogueDamper", "read_catalogue"]
 
@@ -102,19 +100,9 @@ def read_catalogue(path: str | Path) -> list[CatalogueDamper]:
         With one message per problem, each ``file:line: column: what; allowed: ...``.
     """
     file = printable(path)
-    lines = [
-        (position, line)
-        for position, line in enumerate(text_of(path, "a readable CSV file").split("\n"), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise ConfigError(f"{file}:1: no header; allowed: {_header()}")
-    (first, header), *rows = lines
-    units = _columns(header, f"{file}:{first}")
+    first, units, rows = rows_of(path, CatalogueDamper, MOST_ROWS)
     if not rows:
         raise ConfigError(f"{file}:{first}: no dampers; allowed: one row below the header, or more")
-    if len(rows) > MOST_ROWS:
-        raise ConfigError(f"{file}:{first}: {len(rows)} rows; allowed: at most {MOST_ROWS}")
     dampers: list[CatalogueDamper] = []
     problems: list[str] = []
     seen: dict[str, int] = {}
@@ -133,50 +121,8 @@ def read_catalogue(path: str | Path) -> list[CatalogueDamper]:
     return dampers
 
 
-def _header() -> str:
-    fields = CatalogueDamper.model_fields
-    quantities = {key: quantity_of(field.annotation, field.metadata) for key, field in fields.items()}
-    return "the header " + ", ".join(f"{key} [{q.unit}]" if q else key for key, q in quantities.items())
-
-
-def _cells(line: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
-
-
-def _columns(header: str, where: str) -> dict[str, str]:
-    """Unit of each column, in their order; empty for the name."""
-    units: dict[str, str] = {}
-    for cell in _cells(header):
-        match = re.fullmatch(r"(\w+)\s*(?:\[(.+)\])?", cell)
-        key, unit = (match[1], match[2] or "") if match else (cell, "")
-        field = CatalogueDamper.model_fields.get(key)
-        if field is None or key in units:
-            what = "stands twice" if key in units else "is no column"
-            raise ConfigError(f"{where}: {quoted(cell)} {what}; allowed: {_header()}")
-        quantity = quantity_of(field.annotation, field.metadata)
-        if quantity is not None and not unit:
-            raise ConfigError(f"{where}: {key}: no unit; allowed: {key} [{quantity.unit}], or another unit of that dimension")
-        if quantity is None and unit:
-            raise ConfigError(f"{where}: {key}: a unit; allowed: {key} alone")
-        units[key] = unit
-    if missing := [key for key in CatalogueDamper.model_fields if key not in units]:
-        raise ConfigError(f"{where}: {missing[0]}: missing column; allowed: {_header()}")
-    return units
-
-
 def _row(line: str, units: dict[str, str], where: str) -> CatalogueDamper:
-    cells = _cells(line)
-    if len(cells) != len(units):
-        raise ConfigError(f"{where}: {len(cells)} cells; allowed: {len(units)}, as the header has")
-    block: dict[str, str] = {}
-    problems = []
-    for (key, unit), cell in zip(units.items(), cells, strict=True):
-        if unit and number(cell) is None:
-            problems.append(f"{where}: {key}: {quoted(cell)} is no number; allowed: a number, in {unit} as the header says")
-        block[key] = f"{cell} {unit}" if unit else cell
-    if problems:
-        raise ConfigError(problems)
     try:
-        return CatalogueDamper.model_validate(block)
+        return CatalogueDamper.model_validate(row_of(line, units, where))
     except ValidationError as error:
         raise ConfigError([f"{where}: {e['loc'][0]}: {e['msg']}" for e in error.errors(include_url=False)]) from None

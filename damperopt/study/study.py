@@ -6,6 +6,7 @@ in a notebook they can be made directly or changed with `Study.replace`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from html import escape
 from typing import Any, Self
@@ -68,17 +69,26 @@ class Study(Record):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
+        self._inflated()
         decay = self.requirements.decay if self.requirements else None
         for i, speed in enumerate(decay.speeds or () if decay else ()):
             low, high = self.envelope.speed.min, self.envelope.speed.max
             if not low <= speed <= high:
                 allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
                 raise refuse(f"requirements.decay.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
+        cycle = self.requirements.largest_limit_cycle if self.requirements else None
+        for i, speed in enumerate(cycle.speeds or () if cycle else ()):
+            low, high = self.envelope.speed.min, self.envelope.speed.max
+            if not low <= speed <= high:
+                allowed = f"speeds of the envelope, {low:g} to {high:g} m/s"
+                raise refuse(f"requirements.largest_limit_cycle.speeds.{i}", f"{speed:g} m/s is outside the envelope", allowed)
         for load in self.envelope.samples(LOADS):
-            if words := self.beyond_tyre(load):
-                allowed = "loads that the tyre has data for"
+            if words := self.beyond_data(load):
+                allowed = "loads that tyre and strut have data for"
                 raise refuse("envelope.vertical_load", f"{load / 1e3:.6g} kN {words}", allowed)
+        self._braked_on_ground()
         self._certain_enough()
+        self._controllable()
         topology, names = self.damper.topology, [variable.name for variable in self.damper.VARIABLES]
         missing = [name for name in names if getattr(self.design, name) is None]
         if missing:
@@ -95,6 +105,33 @@ class Study(Record):
                 )
         return self
 
+    def _inflated(self) -> None:
+        """Pressures of single wheels are such as the tyre takes, and it asks for one."""
+        for key in ("left_pressure", "right_pressure"):
+            value = getattr(getattr(self.gear, "axle", None), key, None)
+            if value is None:
+                continue
+            F_z, tyre = max(self.wheel_loads(self.envelope.loads[0])), self.tyre
+            try:
+                type(tyre).model_validate({**tyre.model_dump(exclude_none=True), "pressure": value})
+            except ValidationError as error:
+                raise refuse(f"gear.axle.{key}", error.errors()[0]["msg"].partition(";")[0], "as of tyre.pressure") from None
+            if tuple(tyre.linear(F_z, value)) == tuple(tyre.linear(F_z, 0.9 * value)):
+                allowed = "a tyre that depends on it, by its size or a property file; or left_share alone"
+                raise refuse(f"gear.axle.{key}", f"a pressure, which law '{tyre.law}' has no part for", allowed)
+
+    def _braked_on_ground(self) -> None:
+        """A steady drag beyond what the tyres can hold is none: the wheels slide."""
+        drag, gear = getattr(self.gear, "drag", None), self.gear
+        if drag is None:
+            return
+        for load in self.envelope.samples(LOADS):
+            peaks = [tyre.peaks(own, tyre.pressure) for own, tyre in self.on_wheels(load)]
+            found = drag.braking(gear.wheel_radius) + drag.rolling(load)
+            most = sum(peak.side_force for peak in peaks if peak is not None)
+            if None not in peaks and not found < most:
+                raise refuse("gear.drag", f"{found:g} N at a load of {load:g} N", f"less than {most:g} N, which the tyres hold")
+
     def _certain_enough(self) -> None:
         """What uncertain damping does not go with."""
         if self.damper.damping_factors() == (1.0, 1.0):
@@ -105,14 +142,40 @@ class Study(Record):
         if self.requirements is not None and self.requirements.limit_event == "simulated":
             raise refuse("requirements.limit_event", f"simulated, beside {key}", "torque: its force is that of the cold damper")
 
+    def _controllable(self) -> None:
+        """What a control measures and commands."""
+        control, damper = self.damper.control, self.damper
+        if damper.actuator is None and self.requirements is not None and self.requirements.fail_safe_margin is not None:
+            words = "nothing to fail: the proof of the margin has no actuator and no current"
+            raise refuse("requirements.fail_safe_margin", words, "stability_margin, or an actuator (damper.control)")
+        if control is None:
+            return
+        known = [state.name for state in (*self.gear.states(), *(self.tyre.states if self.tyre.contact.RATIONAL else ()))]
+        if unknown := sorted(control.gains.keys() - set(known)):
+            raise refuse(f"damper.control.gains.{unknown[0]}", "no state that can be measured", ", ".join(known))
+        if not damper.COMMANDED:
+            return
+        for key, instead in (("lag", "damper.response_time"), ("limit", "damper.control_current"), ("mass", "mass.damper")):
+            if getattr(control, key):
+                words = f"a {key} of an actuator, beside kind '{damper.kind}', which the law commands by its current"
+                raise refuse(f"damper.control.{key}", words, instead)
+        if not damper.control_current:
+            raise refuse("damper.control_current", "no current that the law could command", "the most that it may, such as 2 A")
+
     def wheel_loads(self, load: float) -> tuple[float, ...]:
         """Loads on the wheels [N] at a load on the gear [N]."""
-        at_rest = {state.name: 0.0 for state in self.gear.states()}
-        return tuple(float(wheel.load) for wheel in self.gear.wheels(at_rest, self.envelope.speed.max, load))
+        return tuple(own for own, _ in self.on_wheels(load))
 
-    def beyond_tyre(self, load: float) -> str:
-        """Why the tyre has no answer at a load on the gear [N], in words; empty where it has one."""
-        return next(filter(None, (self.tyre.beyond(own, self.tyre.pressure) for own in self.wheel_loads(load))), "")
+    def on_wheels(self, load: float) -> tuple[tuple[float, Any], ...]:
+        """Load [N] and tyre of each wheel at a load on the gear [N]."""
+        at_rest = {state.name: 0.0 for state in self.gear.states()}
+        wheels = self.gear.wheels(at_rest, self.envelope.speed.max, load)
+        return tuple((float(wheel.load), self.tyre.of_wheel(wheel)) for wheel in wheels)
+
+    def beyond_data(self, load: float, stroke: float | None = None) -> str:
+        """Why tyre or strut has no answer at a load on the gear [N], and a stroke [m] if it is not in balance; else nothing."""
+        strut = "" if self.gear.strut is None else self.gear.strut.beyond(load, stroke)
+        return strut or next(filter(None, (tyre.beyond(own, tyre.pressure) for own, tyre in self.on_wheels(load))), "")
 
     @property
     def variables(self) -> tuple[DesignVariable, ...]:
@@ -131,6 +194,19 @@ class Study(Record):
         if self.requirements is None:
             raise ConfigError(f"{self.name}: requirements: missing key; allowed: the block requirements, with stability_margin")
         return self.requirements
+
+    def without_control(self) -> Study:
+        """The study with the damper alone."""
+        if self.damper.control is None:
+            return self
+        given = self.requirements is not None and self.requirements.fail_safe_margin is not None
+        return self.replace(damper__control=None, **({"requirements__fail_safe_margin": None} if given else {}))
+
+    @property
+    def fail_safe_margin(self) -> float:
+        """Margin that the gear keeps with its actuator off [1/s]."""
+        given = self.requirements.fail_safe_margin if self.requirements is not None else None
+        return 0.0 if given is None else given
 
     def variable(self, name: str) -> Variable:
         """The design variable `name`, which the layout must have."""
@@ -226,7 +302,7 @@ def unit_of(study: Study, path: str) -> str:
     *parents, leaf = path.split(".")
     record: Any = study
     for key in parents:
-        record = getattr(record, key)
+        record = record[key] if isinstance(record, Mapping) else getattr(record, key)
     field = type(record).model_fields[leaf]
     quantity = quantity_of(field.annotation, field.metadata)
     return quantity.unit if quantity else "1"

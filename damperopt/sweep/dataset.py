@@ -24,6 +24,7 @@ UNITS = {
     "worst_load": "N",
     "lowest_critical_speed": "m/s",
     "highest_critical_speed": "m/s",
+    "contact_lengths_per_wave": "1",
     "decay_ratio": "1",
     "seconds": "s",
 }

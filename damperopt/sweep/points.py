@@ -14,9 +14,10 @@ from ..errors import ConfigError
 from ..optimum.stock import of_chosen_sizes
 from ..provenance import program
 from ..stability.critical import critical_speeds
-from ..stability.linear import LinearModel, linear_gear
+from ..stability.linear import LinearGear, LinearModel, linear_gear
 from ..stability.modes import track_modes
 from ..stability.over_damping import worst_over_damping
+from ..stability.wavelength import shortest_wavelength
 from ..study.study import Study
 
 __all__ = ["run_point"]
@@ -64,7 +65,7 @@ def _optimised(study: Study, speeds: int, start: Mapping[str, float] | None) -> 
             f"mass_{part.replace(' ', '_')}": value for part, value in result.mass.parts.items()
         }
     if result.stability is not None:
-        numbers["abscissa"] = result.stability.abscissa
+        numbers |= {"abscissa": result.stability.abscissa} | _waves(made, linear_gear(made, result.design))
     if result.decay is not None:
         numbers["decay_ratio"] = result.decay.ratio
     modes = _modes(made, result.design, speeds) if result.status == "solved" else None
@@ -90,6 +91,7 @@ def _analysed(study: Study, speeds: int, start: Mapping[str, float] | None) -> d
     gear, worst = model.at(study.start), worst_over_damping(model, study, study.start)[0]
     critical = [c.speed for load in study.envelope.loads for c in critical_speeds(gear, load, *_range(study))]
     numbers = {"abscissa": worst.abscissa, "worst_speed": worst.speed, "worst_load": worst.load}
+    numbers |= _waves(study, gear)
     numbers |= {"lowest_critical_speed": min(critical, default=np.nan), "highest_critical_speed": max(critical, default=np.nan)}
     margin = study.requirements.stability_margin if study.requirements else 0.0
     stable = worst.abscissa < 0
@@ -101,6 +103,12 @@ def _analysed(study: Study, speeds: int, start: Mapping[str, float] | None) -> d
         "result": None,
         "modes": _modes(study, study.start, speeds),
     }
+
+
+def _waves(study: Study, gear: LinearGear) -> dict[str, float]:
+    """The shortest wave of the modes in contact lengths, which says how far a contact line without memory is to be believed."""
+    wave = shortest_wavelength(study, gear)
+    return {} if wave is None else {"contact_lengths_per_wave": wave.contact_lengths}
 
 
 def _range(study: Study) -> tuple[float, float]:

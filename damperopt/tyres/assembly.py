@@ -27,7 +27,7 @@ def contact_lines() -> dict[str, type[ContactLine]]:
     return kinds("tyres.contact", ContactLine, "contact")
 
 
-DEFAULT_CONTACT = "leading_point"
+DEFAULT_CONTACT = "memory"
 
 
 @cache

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import ConfigError
 from ..expressions.corners import Smooth
+from .path_response import PathResponse, path_response
 
 __all__ = ["Column", "TyreCurves", "tyre_curves"]
 
@@ -46,6 +47,8 @@ class TyreCurves:
         (k,) loads of the curves [N].
     force, moment : ndarray
         (k, n) side force [N] and aligning moment [N m].
+    response : PathResponse or None
+        Over path frequency at the middle one of the loads.
     """
 
     name: str
@@ -55,6 +58,7 @@ class TyreCurves:
     drawn: np.ndarray
     force: np.ndarray
     moment: np.ndarray
+    response: PathResponse | None = None
 
 
 def tyre_curves(tyre: Any, loads: Sequence[float], name: str) -> TyreCurves:
@@ -87,7 +91,8 @@ def tyre_curves(tyre: Any, loads: Sequence[float], name: str) -> TyreCurves:
     drawn = np.array(kept)[np.unique(np.linspace(0, len(kept) - 1, MOST_CURVES).round().astype(int))]
     force = [[float(tyre.force(float(alpha), load, pressure)) for alpha in slips] for load in drawn]
     moment = [[float(tyre.moment(float(alpha), load, pressure, Smooth())) for alpha in slips] for load in drawn]
-    return TyreCurves(name, np.array(kept), table, slips, drawn, np.array(force), np.array(moment))
+    curves = np.array(force), np.array(moment)
+    return TyreCurves(name, np.array(kept), table, slips, drawn, *curves, path_response(tyre, kept[len(kept) // 2]))
 
 
 def _linear_columns(F_z: np.ndarray, C_F: np.ndarray, C_M: np.ndarray, sigma: np.ndarray, a: np.ndarray) -> dict[str, Column]:

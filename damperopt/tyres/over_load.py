@@ -1,49 +1,16 @@
-"""A number of a tyre that changes with the load: a table, in straight lines between its points."""
+"""Numbers of a tyre that may be tables over the load of the wheel."""
 
 from __future__ import annotations
 
-from functools import partial
-from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
-from pydantic import Discriminator, Tag, model_validator
-
-from ..expressions.calculus import Expr, piecewise
-from ..quantities.record import Force, Length, Record, refuse
+from ..ports.over_load import OverLoad, over_load
+from ..quantities.record import Length
 from ..quantities.units import Quantity
 
-__all__ = ["LengthOverLoad", "OverLoad", "SlopeOverLoad", "over_load"]
-
+__all__ = ["LengthOverLoad", "SlopeOverLoad"]
 
 CorneringStiffness = Annotated[float, Quantity("N/rad", above=0, example="440 kN/rad")]
-
-
-class OverLoad(Record):
-    """A number at some loads of the wheel, ``{load: [50 kN, 100 kN], value: [0.12 m, 0.17 m]}``."""
-
-    load: tuple[Force, ...]
-    """Loads of one wheel, ascending [N]."""
-    value: tuple[float, ...]
-    """The number at each of them, in the unit of its key."""
-
-    @model_validator(mode="after")
-    def _whole(self) -> Self:
-        if len(self.load) < 2 or len(self.load) != len(self.value):
-            found = f"{len(self.load)} loads and {len(self.value)} values"
-            raise refuse("", found, "as many values as loads, two at least")
-        if any(low >= high for low, high in pairwise(self.load)):
-            raise refuse("load", "loads that do not ascend", "each above the one before")
-        return self
-
-    def at(self, load: Expr) -> Expr:
-        """The number at a load [N]; beyond the table its last line goes on, and `AtLoad.beyond` says so."""
-        points = list(zip(self.load, self.value, strict=True))
-        return piecewise(load, self.load[1:-1], [partial(_line, *ends) for ends in pairwise(points)])
-
-
-def _line(start: tuple[float, float], end: tuple[float, float], load: Expr) -> Expr:
-    (F_0, v_0), (F_1, v_1) = start, end
-    return v_0 + (v_1 - v_0) / (F_1 - F_0) * (load - F_0)
 
 
 class LengthTable(OverLoad):
@@ -58,14 +25,6 @@ class SlopeTable(OverLoad):
 
     value: tuple[CorneringStiffness, ...]
     """The cornering stiffness at each load [N/rad]."""
-
-
-def over_load(number: Any, table: type[OverLoad]) -> Any:
-    """Field type of a number that may be a table over the load as well."""
-    return Annotated[
-        Annotated[number, Tag("<number>")] | Annotated[table, Tag("<table>")],
-        Discriminator(lambda found: "<table>" if isinstance(found, (dict, OverLoad)) else "<number>"),
-    ]
 
 
 LengthOverLoad: Any = over_load(Length, LengthTable)

@@ -10,8 +10,9 @@ c_M = C_Ma/(2 a (sigma (a + sigma) + a^2/3)); with a carcass stiffness both are 
 
 Wheel frame, nonlinear: points of the ground move backwards at V cos(theta) along the wheel plane and at V sin(theta) across it,
 v_t = V (sin(theta) + cos(theta) v_x) - eta' - x cos(theta) theta'. With the slope v_x = -y/sigma of the string before the
-footprint this is the equation of the leading point, thesis (2-14). Source of the linear line: von Schlippe & Dietrich (1941);
-Takacs, Orosz & Stepan (2009).
+footprint this is the equation of the leading point, thesis (2-14). As the load changes, front and rear move against the wheel
+at a' and -a': at a fixed x/a the slope is met at V cos(theta) + x a'/a. Source of the linear line: von Schlippe &
+Dietrich (1941); Takacs, Orosz & Stepan (2009).
 """
 
 from __future__ import annotations
@@ -164,7 +165,37 @@ class StringLine(ContactLine):
         by_theta, by_eta = part.reach / (part.softness + s), part.softness / (part.softness + s)
         f = part.force[0] + part.force[1] * E + part.force[2] * phi1
         m = part.moment[0] + part.moment[1] * E + part.moment[2] * chi
-        return f * by_theta - part.swivel, f * by_eta - part.side, part.turn - m * by_theta, -m * by_eta
+        found = f * by_theta - part.swivel, f * by_eta - part.side, part.turn - m * by_theta, -m * by_eta
+        if self.side_damping() is None:
+            return found
+        damped = self._damped(linear, s, (1, 0), E * by_theta), self._damped(linear, s, (0, 1), E * by_eta)
+        more = speed * damped[0][0], speed * damped[1][0], speed * damped[0][1], speed * damped[1][1]
+        return found[0] + more[0], found[1] + more[1], found[2] + more[2], found[3] + more[3]
+
+    def _damped(self, linear: Linear, s: Expr, motion: tuple[int, int], rear: Expr) -> tuple[Expr, Expr]:
+        """Force and moment of the damping per speed, at a motion (theta, eta) that takes the rear end of the line to `rear`."""
+        C_Fa, C_Ma, sigma, a = linear
+        theta, eta = motion
+        slide, v2 = theta - s * eta, rear - eta + a * theta
+        tan_F, tan_M = self._from_sliding(sigma, a, slide, s * theta, (s - 1 / sigma) * v2)
+        return C_Fa * tan_F, C_Ma * tan_M
+
+    def side_damping(self) -> Expr | None:
+        """b/c of a string with the damping b and the stiffness c per length [s]; None: it has none."""
+        return None
+
+    def _from_sliding(self, sigma: Expr, a: Expr, slide: Expr, turn: Expr, rear: Expr) -> tuple[Expr, Expr]:
+        """tan(alpha_F) and tan(alpha_M) of the damping: b times the rate at which the string is sheared, point by point.
+
+        A point x that the ground holds has the rate slide - x turn, and so has the string before it; behind the line v2 decays:
+        its rate there is `rear`, v2' - V v2/sigma. Source: Takacs, Orosz & Stepan (2009).
+        """
+        per_F, per_M, p, beta = *_per_slip(sigma, a), self.weights(sigma, a), self.side_damping()
+        assert beta is not None
+        front = slide - a * turn
+        tan_F = beta * (p.front * front + p.rear * rear + p.inside * 2 * a * slide) / per_F
+        tan_M = -beta * (p.ends * (front - rear) - p.twist * 2 * a**3 / 3 * turn) / per_M
+        return tan_F, tan_M
 
     def delay(self, z: Expr) -> tuple[Expr, Expr, Expr]:
         """E, phi1, chi at z = 2 a s; those of the exact line."""
@@ -181,14 +212,16 @@ class StringLine(ContactLine):
         y, *c = x
         _, _, sigma, a = linear
         V, theta, theta_t, eta_t = wheel.speed, wheel.swivel, wheel.swivel_rate, wheel.lateral_rate
-        U = V * cos(theta)
-        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - U / sigma * y
+        U, a_t = V * cos(theta), linear.half_contact_length_rate
+        front = (U + a_t) / sigma * y
+        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - front
         c = [*c, -sum(c)]  # u(a) = 0
         rates = []
         for j in range(self.order):
             slope = (2 * j + 1) * sum(c[j + 1 :: 2])  # of u over x/a, its part in P_j
-            rates.append(U / a * slope)
-        rates[0] = rates[0] + U / sigma * y + a * cos(theta) * theta_t
+            stretch = j * c[j] + (2 * j + 1) * sum(c[j + 2 :: 2])  # of x/a times this slope
+            rates.append(U / a * slope + a_t / a * stretch)
+        rates[0] = rates[0] + front + a * cos(theta) * theta_t
         if self.order > 1:
             rates[1] = rates[1] - a * cos(theta) * theta_t
 
@@ -196,6 +229,12 @@ class StringLine(ContactLine):
         per_F, per_M, p = *_per_slip(sigma, a), self.weights(sigma, a)
         tan_F = (p.front * y + p.rear * v2 + p.inside * 2 * a * (y + c[0])) / per_F
         tan_M = -(p.ends * (y - v2) + p.twist * 2 * a**2 / 3 * c[1]) / per_M
+        if self.side_damping() is not None:
+            c_t = [*rates, -sum(rates)]
+            v2_t = y_t + sum(c_t[0::2]) - sum(c_t[1::2])
+            slide, turn = V * sin(theta) - eta_t, cos(theta) * theta_t
+            more_F, more_M = self._from_sliding(sigma, a, slide, turn, v2_t - U / sigma * v2)
+            tan_F, tan_M = tan_F + more_F, tan_M + more_M
         return Slips((y_t, *rates), atan(tan_F), atan(tan_M))
 
 

@@ -40,14 +40,17 @@ CLOSED = 1e-9
 WIDTHS = (1e-4, 1e-6)
 """Parts of the widths of rounded corners, at which the smooth model is compared with the exact one."""
 
+NESTED = 2
+"""Corners whose argument has the modes of others, one behind the other, at most."""
+
 SMALL = 1e-3
 """Size of states [SI] at which models are compared: large enough for nonlinear terms, small enough for every linkage."""
 
 BASE = """
 name: example
 gear: {kind: yaw, yaw_inertia: 20 kg m^2, caster_length: 0.1 m, wheel_radius: 0.35 m}
-tyre: {law: arctangent, half_contact_length: 0.1 m, relaxation_length: 0.25 m, cornering_coefficient: 0.4 1/rad,
-       aligning_coefficient: 0.3 m/rad, aligning_slip_limit: 10 deg}
+tyre: {law: arctangent, contact: leading_point, half_contact_length: 0.1 m, relaxation_length: 0.25 m,
+       cornering_coefficient: 0.4 1/rad, aligning_coefficient: 0.3 m/rad, aligning_slip_limit: 10 deg}
 damper: {topology: boeing, kind: hydraulic}
 envelope: {speed: {min: 5 m/s, max: 60 m/s}, vertical_load: 40 kN}
 requirements: {stability_margin: 0.5 1/s, lug_distance: {min: 0.3 m, max: 1.2 m}, reach: {min: 0.1 m, max: 0.5 m}}
@@ -248,6 +251,8 @@ def smooth_goes_to_exact(study: Study) -> None:
     exact = build(symbolic(study), switched)
     modes = [switch.mode for switch in switched.switches.values()]
     sides = [ca.sign(switch.argument) for switch in switched.switches.values()]
+    for _ in range(NESTED):
+        sides = [ca.substitute(side, ca.vertcat(*modes), ca.vertcat(*sides)) for side in sides]
     with_sides = _equations(exact, [ca.substitute(e, ca.vertcat(*modes), ca.vertcat(*sides)) for e in _rows(exact)])
     errors = []
     for part in WIDTHS:

@@ -66,6 +66,23 @@ def test_equations(study):
     standard.record_survives(study)
 
 
+ACTUATOR = {"gains": {"yaw_angle": {"linear": 20.0}, "yaw_rate": {"constant": 500.0, "quadratic": -0.1}}}
+
+
+@pytest.mark.parametrize("kind", ["hydraulic", "vane", "magnetorheological", "bouc_wen"])
+def test_equations_with_control(kind):
+    """An actuator with lag and limit, or a law that commands the current."""
+    block = home_of(KINDS[kind]) | standard.example(KINDS[kind]) | {"kind": kind, "control": ACTUATOR}
+    commanded = {"control_current": "1 A"} if KINDS[kind].COMMANDED else {}
+    block["control"] = block["control"] | ({} if commanded else {"lag": "5 ms", "limit": "100 N m"})
+    controlled = standard.study_of(damper=block | commanded)
+    standard.rest_is_an_equilibrium(controlled)
+    standard.mirrored_motions_are_motions(controlled)
+    standard.smooth_goes_to_exact(controlled)
+    standard.declared_powers_are_kept_exactly(controlled)
+    standard.record_survives(controlled)
+
+
 @pytest.mark.parametrize("corners", [Linear(), Smooth()], ids=["linear", "smooth"])
 def test_damper_in_floats_is_its_graph(study, corners):
     damper, names = study.damper, [state.name for state in study.damper.STATES]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -51,13 +52,19 @@ def goes_through_the_commands(study: Study, folder: Path) -> None:
         standard.every_quantity_is_shown(study, motion, folder / "motion.csv")
 
 
+@cache
+def _optimum(study: str) -> DesignResult:
+    """Of a study as JSON: what asks for the optimum of one study shares it."""
+    return damperopt.optimise(Study.model_validate_json(study))
+
+
 def is_optimised(study: Study, folder: Path) -> DesignResult | None:
     """A design or a reason why there is none; with a design, its proof and its files."""
     if not study.variables:
         with pytest.raises(damperopt.ConfigError):
             damperopt.optimise(study)
         return None
-    result = damperopt.optimise(study)
+    result = _optimum(study.model_dump_json(exclude_none=True))
     assert result.status in ("solved", "infeasible"), result.message
     if result.status == "solved":
         assert result.certificate.proved

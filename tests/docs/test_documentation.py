@@ -13,7 +13,7 @@ from nbclient import NotebookClient
 import damperopt
 
 ROOT = Path(__file__).parents[2]
-PICTURES = {"01": 3, "02": 1, "03": 2, "04": 2, "05": 2, "06": 2}
+PICTURES = {"01": 3, "02": 1, "03": 2, "04": 2, "05": 2, "06": 2, "07": 0}
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.md"))
 
 
@@ -31,8 +31,8 @@ def test_notebook_runs(path, monkeypatch):
     assert len(pictures) == PICTURES[path.stem[:2]]
 
 
-def test_there_are_six_and_each_ends_with_numbers():
-    assert len(NOTEBOOKS) == 6
+def test_there_are_seven_and_each_ends_with_numbers():
+    assert len(NOTEBOOKS) == 7
     for path in NOTEBOOKS:
         last = jupytext.read(path).cells[-1].source
         assert "print(" in last

@@ -14,7 +14,9 @@ import pytest
 import yaml
 
 import damperopt
+from damperopt.commands.studies import KINDS, STARTERS
 from damperopt.gears.yaw_bending import YawBending
+from damperopt.study.components import rooms
 from damperopt.study.mass_model import MassModel
 from damperopt.study.requirements import Requirements
 from damperopt.study.solver import Solver
@@ -56,7 +58,7 @@ def test_optimise_writes_a_complete_run_folder(configs, tmp_path):
     assert (result["schema_version"], result["verdict"]) == (2, "proved")
     assert result["status"] == "solved"
     assert result["mass"]["total"] == pytest.approx(sum(result["mass"]["parts"].values()))
-    sizes = {"A_link", "A_piston", "rod_diameter", "s_damper"}  # of the elastic parts
+    sizes = {"A_link", "I_hinge", "A_piston", "rod_diameter", "s_damper"}  # of the elastic parts
     assert set(result["design"]) == {"c_lambda", "k_lambda", "L", "gamma", *sizes}
     assert result["certificate"]["proved"]
     assert result["verification"]["passed"]
@@ -182,6 +184,34 @@ def test_init_writes_a_study_that_is_valid_and_solves(tmp_path, call):
     assert call("validate", "my.yaml").code == 0
     result = damperopt.optimise(damperopt.load(tmp_path / "my.yaml"))
     assert result.status == "solved"
+
+
+@pytest.mark.parametrize("gear", STARTERS)
+def test_ready_made_gears_are_written_and_valid(gear, tmp_path, call):
+    """Under the name of the file, with the schema's line first; the commands that they tell are commands of theirs."""
+    place = tmp_path / f"my {gear}.yaml"
+    written = call("init", "--gear", gear, place.name)
+    assert written.code == 0
+    assert f"next: damperopt {'analyse' if gear in ('caster', 'tail') else 'optimise'} my {gear}.yaml" in written.out
+    assert call("validate", place.name).code == 0
+    text = place.read_text()
+    assert text.startswith("# yaml-language-server")
+    assert f"'my {gear}.yaml'" in text
+    assert "configs/" not in text.replace("configs/tyres", "")
+
+
+def test_kinds_of_gear_name_their_starter(tmp_path, call):
+    for kind, gear in KINDS.items():
+        assert call("init", "--gear", kind, f"{kind}.yaml").code == 0
+        assert call("init", "--gear", gear, f"{kind}_{gear}.yaml").code == 0
+        one, other = ((tmp_path / f"{name}.yaml").read_text() for name in (kind, f"{kind}_{gear}"))
+        assert one.replace(f"{kind}.yaml", "") == other.replace(f"{kind}_{gear}.yaml", "")
+    assert rooms()["gears"].keys() <= {*KINDS, *STARTERS}
+    wrong = call("init", "--gear", "skid", "skid.yaml")
+    assert wrong.code == 2
+    assert "found 'skid'" in wrong.err
+    assert all(name in wrong.err for name in (*STARTERS, *KINDS))
+    assert not (tmp_path / "skid.yaml").exists()
 
 
 def test_schema_accepts_every_shipped_study_and_refuses_unknown_keys(configs, tmp_path, call):

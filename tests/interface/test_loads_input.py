@@ -80,3 +80,17 @@ def test_factors_below_one_are_refused(text):
             damperopt.loads(text.replace("  limit_factor: 1.5\n", f"  {key}: 0.9\n"))
         (problem,) = error.value.problems
         assert f"requirements.{key}: 0.9 is out of range" in problem
+
+
+@pytest.mark.parametrize(
+    ("lug", "says"),
+    [
+        ("{edge: 0.8}", r"mass\.lug\.edge: 0\.8 is 1\.33 bores.*1\.5 bores \(0\.9\)"),
+        ("{width: 0.6}", r"mass\.lug\.width: .*beside the bore"),
+    ],
+)
+def test_an_eye_is_one_that_strengths_hold_for(text, tmp_path, lug, says):
+    path = tmp_path / "study.yaml"
+    path.write_text(f"{text}\nmass: {{lug: {lug}}}\n")
+    with pytest.raises(damperopt.ConfigError, match=says):
+        damperopt.load(path)

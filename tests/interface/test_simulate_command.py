@@ -412,3 +412,47 @@ def test_exact_engine_shows_every_cycle_of_a_long_motion(main_gear):
     assert smooth.cycles > 900
     assert exact.cycles == smooth.cycles
     assert exact.decay_ratio == pytest.approx(smooth.decay_ratio, rel=COMMANDED_PEAK)
+
+
+HISTORY = """time [s], speed [m/s], load [kN], yaw_torque [N m]
+0.0, 40, 100, 0
+0.1, 38, 160, 300
+0.3, 30, 150, 0
+"""
+
+
+def test_along_a_history(call, configs, tmp_path):
+    """Files, peaks with their places, speed and load in the table; the torque of the history is all that disturbs."""
+    (tmp_path / "roll.csv").write_text(HISTORY)
+    study = configs / "thesis_gear.yaml"
+    done = call("simulate", study, "--history", "roll.csv", "--engine", "exact", "-o", "out")
+    assert done.code == 0, done.err
+    assert "Along the history: 40 to 30 m/s, 100 to 150 kN, at most 160 kN, 0.3 s" in done.out
+    assert "After the yaw torque of the history" in done.out
+    assert "release" not in done.out
+    assert "It leaves the envelope of the study" in done.out
+    assert {file.name for file in (tmp_path / "out").iterdir()} == FILES
+    found = read(tmp_path / "out")
+    t, V = found.columns["time"], found.columns["speed"]
+    np.testing.assert_allclose(V, np.interp(t, [0, 0.1, 0.3], [40, 38, 30]), rtol=1e-9)
+    peak = found.motion["peaks"]["yaw_angle"]
+    assert peak["value"] == pytest.approx(np.abs(found.columns["yaw_angle"]).max(), rel=1e-9)
+    assert peak["speed"] == pytest.approx(np.interp(peak["time"], t, V))
+    assert found.motion["disturbance"] is None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((), "--speed: missing; allowed: a speed such as 40 or '120 kt', or --history with a CSV file"),
+        (("--history", "roll.csv", "--speed", "40"), "--speed: found 40 beside --history, which says it"),
+        (("--history", "roll.csv", "--duration", "1"), "--duration: found 1 beside --history"),
+        (("--history", "nowhere.csv"), "nowhere.csv: cannot be read"),
+    ],
+)
+def test_questions_about_histories_that_are_refused(call, configs, tmp_path, options, message):
+    (tmp_path / "roll.csv").write_text(HISTORY)
+    done = call("simulate", configs / "thesis_gear.yaml", *options, "-o", "out")
+    assert done.code == 2
+    assert message in " ".join(done.err.split())
+    assert not (tmp_path / "out").exists()

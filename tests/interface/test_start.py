@@ -6,7 +6,7 @@ import sys
 import pytest
 
 HEAVY = ("casadi", "matplotlib", "numpy", "pint", "scipy")
-COMMANDS = ("optimise", "report", "analyse", "simulate", "chart", "sweep", "thesis", "validate", "init", "schema")
+COMMANDS = ("optimise", "report", "analyse", "simulate", "breakout", "chart", "sweep", "thesis", "validate", "init", "schema")
 ASK = f"""
 import sys
 from damperopt.cli import main

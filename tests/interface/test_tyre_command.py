@@ -13,7 +13,8 @@ from damperopt import cli
 from damperopt.tyres.curves import tyre_curves
 
 SIZE = ("--size", "49x17", "--type", "VII", "--rated-pressure", "170psi")
-FILES = {"tyre.csv", "tyre-slip.csv", "slip.png", "slip.svg", "load.png", "load.svg"}
+FILES = {"tyre.csv", "tyre-slip.csv", "tyre-response.csv"}
+FILES |= {f"{name}.{kind}" for name in ("slip", "load", "response") for kind in ("png", "svg")}
 TIR = """[MODEL]
 FITTYP = 5
 [DIMENSION]
@@ -62,6 +63,9 @@ def test_size_gives_table_and_figures_and_says_that_it_is_an_estimate(call, tmp_
         assert words in done.out
     table = columns(tmp_path / "out" / "tyre.csv")
     assert len(table["load [N]"]) == 25
+    assert "within 10 %" in done.out
+    response = columns(tmp_path / "out" / "tyre-response.csv")
+    assert {"memory", "leading_point", "von_schlippe", "pade, order 2"} < set(response["contact line"])
     slip = columns(tmp_path / "out" / "tyre-slip.csv")
     assert max(map(float, slip["aligning_moment [N m]"])) > 0
 
@@ -101,6 +105,7 @@ def test_property_file_says_what_was_used(call, tmp_path):
     assert "used: FNOMIN" in done.out
     assert "taken as 0: PDY2" in done.out
     assert "no [UNITS]: taken as SI" in done.out
+    assert not (tmp_path / "out" / "response.png").exists()
     table = columns(tmp_path / "out" / "tyre.csv")
     assert set(table["half_contact_length [m]"]) == set(table["carcass_stiffness [N/m^2]"]) == {""}
     assert all(table["aligning_stiffness [N m/rad]"])

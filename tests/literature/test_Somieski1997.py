@@ -22,6 +22,7 @@ def nose_gear(main_gear):
             gear={"order": 3, "yaw_inertia": 1.0, "caster_length": 0.1, "wheel_radius": 0.2},
             tyre={
                 "law": "linear",
+                "contact": "leading_point",
                 "half_contact_length": 0.1,
                 "relaxation_length": 0.3,
                 "cornering_slope": 20.0,

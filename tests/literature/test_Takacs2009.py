@@ -27,13 +27,14 @@ def their_function(l, V, L):
     return SIGMA * V**2 * l**3 + 2 * V**2 * l**2 + SIGMA * l + 2 - q / den * braces
 
 
-def towed(L, low=0.05, high=1.0):
+def towed(L, low=0.05, high=1.0, contact="memory"):
     """The same wheel as a study, speeds as V."""
     unit = 2 * a * natural_frequency(L)
     return unit, loads(f"""
 name: towed wheel
 gear: {{order: 3, yaw_inertia: {J!r}, caster_length: {L * a!r}, wheel_radius: 0.2}}
-tyre: {{law: stiffness, half_contact_length: {a!r}, relaxation_length: {sigma!r}, carcass_stiffness: {c_c!r}, contact: memory}}
+tyre: {{law: stiffness, half_contact_length: {a!r}, relaxation_length: {sigma!r}, carcass_stiffness: {c_c!r},
+       contact: {contact}}}
 damper: {{topology: rotational, torsional_stiffness: 0, torsional_damping: 0}}
 envelope: {{speed: {{min: {float(low * unit)!r}, max: {float(high * unit)!r}}}, vertical_load: 100}}
 """)
@@ -76,4 +77,36 @@ def test_certificate_finds_their_narrow_bands():
     certificate = certify(shimmies, {}, 0.0)
     assert certificate.verdict == "refuted"
     _, rolls = towed(0.5, low=0.186, high=0.217)
+    assert certify(rolls, {}, 0.0).verdict == "proved"
+
+
+DAMPED = {
+    0.5: ((0.21744, 1.66773), (0.16810, 6.12756), (0.13604, 6.98200)),
+    1.0: ((0.36461, 1.85547), (0.17519, 5.90767), (0.13305, 7.19436)),
+    2.0: ((0.47522, 1.94467),),
+}
+"""With the damping of their tyre, zeta = 0.02, of the same prototype."""
+
+
+def damped(L, line="memory", order=12, **ends):
+    """With zeta = 0.02 and the delay by a Pade approximation good to 2 a w/V = 12."""
+    beta = float(2 * 0.02 / natural_frequency(L))
+    return towed(L, contact=f"{{kind: pade, order: {order}, line: {line}, damping_time: {beta!r}}}", **ends)
+
+
+@pytest.mark.parametrize("L", DAMPED)
+def test_boundary_points_with_side_damping(L):
+    unit, study = damped(L, low=0.11)
+    found = critical_speeds(linear_gear(study), 100.0, 0.11 * unit, unit)
+    points = [(c.speed / unit, 2 * np.pi * c.frequency * 2 * a / c.speed) for c in found]
+    assert len(points) == len(DAMPED[L])
+    for V, w in DAMPED[L]:
+        assert min(max(abs(p[0] - V), abs(p[1] - w)) for p in points) < 6e-6
+
+
+def test_side_damping_is_proved_where_their_chart_is_stable():
+    """Between the second and third boundary points of L = 1 the damped wheel shimmies; beyond them it is proved not to."""
+    _, shimmies = damped(1.0, order=6, low=0.15, high=0.16)
+    assert certify(shimmies, {}, 0.0).verdict == "refuted"
+    _, rolls = damped(1.0, order=6, low=0.2, high=0.36)
     assert certify(rolls, {}, 0.0).verdict == "proved"

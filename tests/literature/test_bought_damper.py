@@ -58,7 +58,7 @@ def test_maxwell_element_by_hand(configs, V):
 def test_largest_force_is_that_of_the_chain_that_is_let_go(configs):
     """Against the matrix exponential of I psi'' = -K (psi - p), K (psi - p) = k p + k_s (p - d), c d' = k_s (p - d)."""
     study = gear(configs, compliance={"link": "sized", "support": "rigid", "arm": "rigid"})
-    design = {**LAYOUT, "A_link": 3e-4}
+    design = {**LAYOUT, "A_link": 3e-4, "I_hinge": 5e-7}
     link = elastic_linkage(study, design)
     event = limit_event(study, link, design, max(study.envelope.loads))
     torque, inertia = float(event.torque), study.gear.yaw_inertia
@@ -75,7 +75,7 @@ def test_largest_force_is_that_of_the_chain_that_is_let_go(configs):
 
 def test_row_limits_force_stroke_and_room(configs):
     study = gear(configs, compliance="sized")
-    design = {**LAYOUT, "A_link": 3e-4}
+    design = {**LAYOUT, "A_link": 3e-4, "I_hinge": 5e-7}
     problem = DesignProblem(study)
     event = problem.limit_event(design)
     values = problem.values(design)

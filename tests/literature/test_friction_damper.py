@@ -7,7 +7,7 @@ import pytest
 from components_of import damper_of
 from table_gear import GEAR, TYRE, table_gear
 
-from damperopt import ConfigError, Study, simulate, simulate_exactly
+from damperopt import ConfigError, Disturbance, Study, least_breakout, simulate, simulate_exactly
 from damperopt.dampers.base import Context
 from damperopt.stability.linear import linear_gear
 
@@ -146,7 +146,63 @@ def test_a_castering_gear_is_held_up_to_a_kick_and_not_beyond():
     assert not grows(40.0, 5.0)
 
 
-@pytest.mark.parametrize("keys", [{}, {"breakout_torque": 1.0, "breakout_force": 1.0}, {"breakout_force": 1.0}])
+@pytest.mark.parametrize(
+    "keys", [{}, {"breakout_torque": 1.0, "breakout_force": 1.0}, {"breakout_torque": 1.0, "breakout_lever": 0.1}]
+)
 def test_breakout_is_said_in_one_way(keys):
     with pytest.raises(ValueError, match="incomplete or double breakout"):
         gear(**keys)
+
+
+@pytest.mark.parametrize(
+    ("said", "torque"),
+    [("25 lbf at the axle", 25 * 4.4482216152605 * 0.12), ("100 N at 0.2 m", 20.0), ("30 N m", 30.0), (7.0, 7.0)],
+)
+def test_breakout_as_builders_say_it(said, torque):
+    """The axle of this gear stands 0.12 m behind the axis."""
+    motion = simulate_exactly(gear(breakout=said), speed=30.0, disturbance={"kick": {"yaw_rate": 1.0}}, duration=0.01)
+    assert np.abs(motion["friction_torque"]).max() == pytest.approx(torque, rel=1e-12)
+
+
+def test_play_and_stop_about_the_yaw_axis():
+    """Free of all else, I psi'' = -k (|psi| - g) beyond the play and the stop's k_s beyond the stop: periods in closed form."""
+    play, stop, k_s = 0.002, 0.02, 3e6
+    study = gear(
+        kind="torsional",
+        torsional_damping=0.0,
+        freeplay={"gap": play},
+        end_stop={"stroke": stop, "stiffness": k_s},
+    )
+    rate = 0.01 * np.sqrt(K / INERTIA)  # stays short of the stop: a quarter is play/rate and a quarter of a sine
+    motion = simulate_exactly(study, speed=30.0, disturbance={"kick": {"yaw_rate": rate}}, duration=1.0, points=4001)
+    half = 2 * play / rate + np.pi * np.sqrt(INERTIA / K)
+    turns = motion.time[:-1][motion["yaw_angle"][:-1] * motion["yaw_angle"][1:] < 0]
+    np.testing.assert_allclose(np.diff(turns), half, atol=1e-3)
+    assert np.abs(motion["yaw_angle"]).max() == pytest.approx(play + 0.01, rel=1e-3)
+    assert np.abs(motion["stop_torque"]).max() < 1e-9  # rounding of its dead band
+    fast = 0.05 * np.sqrt(K / INERTIA)
+    met = simulate_exactly(study, speed=30.0, disturbance={"kick": {"yaw_rate": fast}}, duration=0.1, points=4001)
+    beyond = np.abs(met["yaw_angle"]).max() - play  # energy: I w^2/2 = K x^2/2 + k_s (x - s)^2/2
+    assert 0.5 * K * beyond**2 + 0.5 * k_s * (beyond - stop) ** 2 == pytest.approx(0.5 * INERTIA * fast**2, rel=1e-3)
+    hard = study.replace(damper__end_stop__stiffness=None)
+    ended = simulate_exactly(hard, speed=30.0, disturbance={"kick": {"yaw_rate": fast}}, duration=0.1)
+    assert "the damper meets its stop at 1.146 deg" in ended.message
+
+
+def test_least_breakout_for_a_kick():
+    """The border of the test above: what is found holds, a twentieth less does not."""
+    tyre = {**TYRE, "cornering_slope": 8.0, "aligning_coefficient": 0.3, "tread_width_moment": 0.0}
+    base = {"kind": "yaw", "yaw_inertia": 0.3, "caster_length": 0.08, "wheel_radius": 0.15}
+    study = gear({**tyre, "half_contact_length": 0.05, "relaxation_length": 0.15}, base, breakout_torque=10.0)
+    study = study.replace(damper__torsional_stiffness=0.0, envelope__vertical_load=1500.0, envelope__speed__max=40.0)
+    kick = Disturbance.model_validate({"kick": {"yaw_rate": 3.0}})
+    found = least_breakout(study, kick, [8.0, 15.0], 1500.0, 1.0)
+    for part, rests in ((1.0, True), (0.96, False)):
+        own = study.replace(damper__breakout_torque=part * found.torque)
+        moving = [
+            simulate_exactly(own, speed=V, disturbance=kick, duration=1.0, points=400)["yaw_rate"][-20:].any()
+            for V in (8.0, 15.0)
+        ]
+        assert (not any(moving)) == rests
+    with pytest.raises(ConfigError, match=r"damper.kind: found 'torsional'; allowed: friction"):
+        least_breakout(gear(kind="torsional", torsional_damping=1.0), kick, [8.0], 1500.0, 1.0)

@@ -10,10 +10,11 @@ from components_of import damper_block, damper_of
 from scipy.integrate import solve_ivp
 from table_gear import TYRE, table_gear
 
-from damperopt import Study, simulate, simulate_exactly
+from damperopt import ConfigError, Study, simulate, simulate_exactly
 from damperopt.dampers.base import Context
 from damperopt.expressions.corners import Switched
 from damperopt.stability.linear import linear_gear
+from damperopt.study.scope import covers
 
 NONE = {**TYRE, "cornering_slope": 0.0, "aligning_coefficient": 0.0, "tread_width_moment": 0.0}
 ELL, K_LAMBDA = 0.3, 1e6
@@ -189,3 +190,58 @@ def test_smooth_version_goes_to_the_exact_one_with_joints(joints, current):
     assert exact.status == smooth.status == "completed"
     error = np.interp(exact.time, smooth.time, smooth["yaw_angle"]) - exact["yaw_angle"]
     assert np.abs(error).max() < 2e-3 * 0.01
+
+
+K_ANGLE, K_RATE = 2e3, 3e3
+LAW = {"gains": {"yaw_angle": {"constant": K_ANGLE}, "yaw_rate": {"constant": K_RATE}}}
+
+
+def clipped_motion(hysteresis: bool, start: list[float], duration: float):
+    """I psi'' = -k ell^2 sin cos - F ell cos with the clipped-optimal current, written out and given to SciPy."""
+    c, f_1, i_1, tau, band, knee = 500.0, 1e3, 2.0, 0.01, 50.0, 2e-3
+
+    def clip(x, low, high):
+        return min(max(x, low), high)
+
+    def rates(t, x):
+        psi, w, i = x[:3]
+        lever = ELL * math.cos(psi)
+        v = lever * w
+        z = x[3] if hysteresis else math.tanh(v / 1e-6)
+        F, wanted = c * v + f_1 * i * z, (K_ANGLE * psi + K_RATE * w) / ELL
+        share = clip((wanted * clip(F / band, -1, 1) - abs(F)) / band, 0, 1)
+        found = [w, -(K_LAMBDA * ELL * math.sin(psi) + F) * lever / 100.0, (i_1 * share - i) / tau]
+        return [*found, (v - 0.5 * abs(v) * z * abs(z) - 0.5 * v * z * z) / knee] if hysteresis else found
+
+    method = "DOP853" if hysteresis else "LSODA"
+    return solve_ivp(rates, (0, duration), start, method, rtol=1e-9, atol=1e-12, max_step=1e-3, dense_output=True).sol
+
+
+@pytest.mark.parametrize(("kind", "own"), [("magnetorheological", {"smoothing": 1e-5}), ("bouc_wen", {"knee": 2e-3})])
+def test_clipped_optimal_current(kind, own):
+    """Against equations of this file: exact, and smooth as far as its corners are rounded; of the proof it is no part."""
+    study = gear(kind=kind, design={"c_lambda": 500.0}, control_current=2.0, response_time=0.01, control=LAW, **own)
+    kick = {"kick": {"yaw_rate": 2.0}}
+    theirs = clipped_motion(kind == "bouc_wen", [0.0, 2.0, 0.0] + [0.0] * (kind == "bouc_wen"), 0.5)
+    for run, yaw, current in ((simulate_exactly, 1e-6, 1e-4), (simulate, 2e-3, 0.02)):
+        motion = run(study, speed=30.0, disturbance=kick, duration=0.5)
+        expected = theirs(motion.time)
+        assert np.abs(motion["yaw_angle"] - expected[0]).max() < yaw * np.abs(expected[0]).max()
+        assert np.abs(motion["control_current"] - expected[2]).max() < current
+        assert motion["control_current"].max() > 1.9
+    without = study.without_control()
+    for V in (10.0, 40.0):
+        np.testing.assert_array_equal(linear_gear(study).matrices(V, 150e3), linear_gear(without).matrices(V, 150e3))
+    words = " ".join(covers(study))
+    assert "commands a current, which the certificate does not hold" in words
+
+
+def test_what_a_law_commands():
+    study = gear(control_current=2.0, control=LAW)
+    for key, value, words in (
+        ("damper__control__lag", 0.01, "damper.control.lag: a lag of an actuator"),
+        ("damper__control__limit", 100.0, "damper.control.limit"),
+        ("damper__control_current", 0.0, "damper.control_current: no current that the law could command"),
+    ):
+        with pytest.raises(ConfigError, match=words):
+            study.replace(**{key: value})

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from table_gear import assert_printed, eigenvalues, table_gear
 
+from damperopt import certify, linear_gear, loads
 from damperopt.gears.rigid_tyre import rigid_polynomial
 
 
@@ -32,6 +33,7 @@ def test_stiff_tyre_of_a_point_is_rigid():
     for length in (1e-2, 1e-3, 1e-4):
         tyre = {
             "law": "stiffness",
+            "contact": "leading_point",
             "half_contact_length": length / 10,
             "relaxation_length": length,
             "cornering_stiffness": 1e8 / length,
@@ -55,3 +57,32 @@ def test_undamped_it_is_stable_where_yaw_is_the_faster(speed):
 def test_without_caster_there_is_no_such_gear():
     with pytest.raises(ValueError, match="needs a caster, and no rake"):
         roots(40.0, caster_length=0.0)
+
+
+CASTOR = """
+name: towed castor
+gear: {{kind: yaw_translation, yaw_inertia: {inertia}, caster_length: 0.2, wheel_radius: 0.3,
+       sideways: {{mass: 40, stiffness: 2e5, damping: 0}}, swivelling: {{mass: 25, offset: {offset}}}}}
+tyre: {{law: stiffness, contact: leading_point, half_contact_length: 1e-5, relaxation_length: 1e-5,
+       cornering_stiffness: 1e11, aligning_stiffness: 0}}
+damper: {{topology: rotational, torsional_stiffness: 0, torsional_damping: 0}}
+envelope: {{speed: {{min: 1 m/s, max: 40 m/s}}, vertical_load: 10 kN}}
+"""
+
+
+@pytest.mark.parametrize("offset", [0.05, 0.12])
+def test_castor_is_stable_where_the_ground_is_beyond_the_centre_of_percussion(offset):
+    """Towed on an elastic pivot without slip: w' + e psi' + V psi = 0 leaves a cubic, stable at every speed or at none.
+
+    With T = (I psi'^2 + 2 m x_g w' psi' + m_w w'^2)/2 and the constraint,
+    (I - 2 m x_g e + m_w e^2) s^3 + (m_w e - m x_g) V s^2 + k_w e^2 s + k_w e V: Routh asks for m x_g e > I.
+    """
+    e, V, lever = 0.2, 10.0, 25 * offset
+    for part, stable in ((0.98, True), (1.02, False)):
+        study = loads(CASTOR.format(inertia=part * lever * e, offset=offset))
+        leading = part * lever * e - 2 * lever * e + 40 * e**2
+        cubic = np.sort_complex(np.roots([leading, (40 * e - lever) * V, 2e5 * e**2, 2e5 * e * V]))
+        found = linear_gear(study).roots(V, 1e4, 3)[0]
+        np.testing.assert_allclose(np.sort_complex(found), cubic, rtol=1e-3)
+        assert (cubic.real.max() < 0) == stable
+        assert certify(study, {}, margin=0.0).proved == stable

@@ -19,6 +19,7 @@ TABLE = {  # Table 0.1 of Arreaza (2015), with stiffness and damping about the y
     },
     "tyre": {
         "law": "linear",
+        "contact": "leading_point",
         "half_contact_length": 0.1,
         "relaxation_length": 0.3,
         "cornering_slope": 0.014,

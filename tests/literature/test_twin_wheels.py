@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from table_gear import TYRE, assert_printed, eigenvalues, table_gear
 
-from damperopt import simulate, simulate_exactly
+from damperopt import ConfigError, certify, loads, simulate, simulate_exactly
 from damperopt.stability.linear import linear_gear
 
 AXLE = {
@@ -104,3 +104,57 @@ def test_slip_of_either_wheel_ends_a_simulation():
         motion = run(study, speed=40.0, disturbance={"release": {"yaw_angle": 0.05}}, duration=0.5)
         assert motion.status == "stopped"
         assert "slip_range" in motion.message
+
+
+UNEQUAL = """
+name: one soft tyre
+gear: {{kind: twin, yaw_inertia: 100, caster_length: 0.12, wheel_radius: 0.362, axle: {{{axle}}},
+       lateral: {{inertia: 600, stiffness: 6.1e6, damping: 300, height: 2.5}}}}
+tyre: {{size: 49x17, type: VII, rated_pressure: 170 psi, contact: {contact}}}
+damper: {{topology: rotational, torsional_stiffness: 3.8e5, torsional_damping: 3000}}
+envelope: {{speed: {{min: 20 m/s, max: 60 m/s}}, vertical_load: 250 kN}}
+"""
+TRACK = "half_track: 0.45, slip_stiffness: 1.2e6, longitudinal_relaxation: 0.25, vertical_stiffness: 1.5e6"
+SOFT = f"{TRACK}, left_share: 0.6, left_pressure: 180 psi, right_pressure: 100 psi"
+
+
+def unequal(axle, contact="leading_point"):
+    return loads(UNEQUAL.format(axle=axle, contact=contact))
+
+
+def test_tyres_of_different_pressure_and_load():
+    """Two strings of their own lengths, by a matrix written out; the numbers of either tyre alone are those of its law."""
+    study, V, e, l, t_w = unequal(SOFT), 40.0, 0.12, 2.5, 0.45
+    A = np.zeros((7, 7))
+    A[0, 1] = A[2, 3] = 1
+    A[1, :2] = -3.8e5 / 100, -3000 / 100
+    A[3, [0, 2, 3]] = 250e3 * e / 600, -(6.1e6 + 2 * 1.5e6 * t_w**2) / 600, -300 / 600
+    A[1, 6] = -2 * 1.2e6 / 0.25 * t_w / 100
+    A[6, [1, 6]] = t_w, -V / 0.25
+    for k, (share, psi) in enumerate(((0.6, 180.0), (0.4, 100.0))):
+        C_Fa, C_Ma, sigma, a = study.tyre.linear(share * 250e3, psi * 6894.757293168)
+        A[1, 4 + k] = -(e * C_Fa + C_Ma) / sigma / 100
+        A[3, 4 + k] = -l * C_Fa / sigma / 600
+        A[4 + k, [0, 1, 3, 4 + k]] = V, e - a, l, -V / sigma
+    found = linear_gear(study).roots(V, 250e3)[0]
+    np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(np.linalg.eigvals(A)), rtol=1e-9)
+    assert abs(found[0] - linear_gear(unequal(TRACK)).roots(V, 250e3)[0, 0]) > 0.05
+    assert certify(study, {}, margin=0.1).proved
+    left_open = certify(unequal(SOFT, "memory"), {}, margin=0.1)
+    assert left_open.verdict == "undecided"
+    assert "unlike tyres" in left_open.reason
+
+
+def test_equal_pressures_are_that_of_the_tyre():
+    same = unequal(f"{TRACK}, left_share: 0.5, left_pressure: 170 psi, right_pressure: 170 psi", "memory")
+    one, other = (linear_gear(study).roots(40.0, 250e3, 4) for study in (same, unequal(TRACK, "memory")))
+    np.testing.assert_allclose(one, other, rtol=1e-12)
+
+
+def test_pressures_are_refused_where_they_mean_nothing():
+    with pytest.raises(ConfigError, match=r"gear\.axle\.right_pressure: .*of the rated pressure"):
+        unequal(f"{TRACK}, right_pressure: 20 psi")
+    text = UNEQUAL.format(axle=f"{TRACK}, left_pressure: 1 MPa", contact="leading_point")
+    law = "law: brush, half_contact_length: 0.1, relaxation_length: 0.3, cornering_stiffness: 4e5, friction: 0.7"
+    with pytest.raises(ConfigError, match=r"gear\.axle\.left_pressure: .*'brush' has no part for"):
+        loads(text.replace("size: 49x17, type: VII, rated_pressure: 170 psi", law))

@@ -9,33 +9,37 @@ pytestmark = pytest.mark.slow
 # mass [kg], design, constraints active at the optimum of configs/main_gear.yaml
 FROZEN = {
     "arreaza": (
-        15.0240114,
-        {"c_lambda": 28029.8, "I_arm": 1.0725113e-6, "L": 0.5550806, "gamma": 0.7343977, "b": 0.1808912}
-        | {"A_piston": 6.450462e-4, "rod_diameter": 0.012, "s_damper": 9.940665e-3}
-        | {"A_link": 2.3002921e-4, "A_support": 1.6002465e-4},
-        {
-            "damping_ratio",
-            "arm_ultimate",
-            "link_buckling",
-            "support_buckling",
-            "rod_minimum",
-            "piston_pressure",
-            "damper_stroke",
-        }
-        | {"tyre_clearance", "damper_length"},
+        17.1757787,
+        {"c_lambda": 33320.2, "I_arm": 1.0241587e-6, "L": 0.5720368, "gamma": 0.7666577, "b": 0.1849796}
+        | {"A_piston": 7.391172e-4, "rod_diameter": 0.012, "s_damper": 0.010679722}
+        | {"A_link": 2.2951124e-4, "I_hinge": 1.7443995e-7, "A_support": 1.762418e-4, "I_foot": 1.115379e-7},
+        {"damping_ratio", "arm_ultimate", "link_buckling", "support_buckling", "rod_minimum", "piston_pressure"}
+        | {"damper_stroke", "tyre_clearance", "damper_length"},
     ),
     "utas": (
-        17.1272311,
-        {"c_lambda": 164529.5, "I_arm": 1.018577e-6, "L": 0.5742334, "gamma": 0.7706209, "b": 0.0981429}
-        | {"A_piston": 1.739776e-3, "rod_diameter": 0.012, "s_damper": 0.00508, "A_link": 2.294807e-4},
-        {"damping_ratio", "arm_ultimate", "link_buckling", "rod_minimum", "piston_pressure", "damper_stroke", "working_stroke"}
-        | {"reach_max", "tyre_clearance"},
+        16.5507774,
+        {"c_lambda": 132052.2, "I_arm": 1.0741623e-6, "L": 0.5678836, "gamma": 0.7590345, "b": 0.1171125}
+        | {
+            "A_piston": 1.4880434e-3,
+            "rod_diameter": 0.012,
+            "s_damper": 0.00508,
+            "A_link": 2.2959022e-4,
+            "I_hinge": 1.7428467e-7,
+        },
+        {"damping_ratio", "beam_ultimate", "hinge_ultimate", "link_buckling", "rod_minimum", "piston_pressure", "damper_stroke"}
+        | {"working_stroke", "tyre_clearance"},
     ),
     "boeing": (
-        8.7014159,
-        {"c_lambda": 90983.3, "k_lambda": 7086614.0, "L": 0.5742334, "gamma": 0.7706209}
-        | {"A_piston": 1.104845e-3, "rod_diameter": 0.012, "s_damper": 0.00508, "A_link": 2.294807e-4},
-        {"damping_ratio", "link_buckling", "rod_minimum", "piston_pressure", "damper_stroke", "working_stroke", "reach_max"}
+        11.4368066,
+        {"c_lambda": 86857.1, "k_lambda": 4913702.7, "L": 0.5742334, "gamma": 0.7706209}
+        | {
+            "A_piston": 1.2443401e-3,
+            "rod_diameter": 0.012,
+            "s_damper": 7.3264508e-3,
+            "A_link": 2.2948074e-4,
+            "I_hinge": 1.7377287e-7,
+        },
+        {"damping_ratio", "hinge_ultimate", "link_buckling", "rod_minimum", "piston_pressure", "damper_stroke", "reach_max"}
         | {"tyre_clearance"},
     ),
 }

@@ -109,6 +109,7 @@ def quadratic_gear(base, M, speed, load=1.0):
     M is C_M + e C_F', the moment per slip angle and load; from the closed form of the theory page, section 2.
     """
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": 0.5,
         "relaxation_length": 1.0,
         "tread_width_moment": 0.0,

@@ -5,6 +5,7 @@ from scipy.optimize import minimize_scalar
 
 LINEAR_TYRE = {
     "law": "linear",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "tread_width_moment": 570.0,
@@ -15,6 +16,7 @@ LINEAR_TYRE = {
 
 STRAIGHT_TANGENT_TYRE = {
     "law": "stiffness",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "tread_width_moment": 570.0,
@@ -66,6 +68,7 @@ def random_gear(rng, base, order=None, spread=1.0, **changes):
     law = str(rng.choice(["nonlinear", "linear", "stiffness"], p=[0.5, 0.25, 0.25]))
     tyre = {
         "law": law,
+        "contact": "leading_point",
         "half_contact_length": near(0.1),
         "relaxation_length": near(0.3),
         "tread_width_moment": near(570.0) * float(rng.random() < 0.8),

@@ -112,6 +112,7 @@ ISLAND = {
     "stiffness": 8.9e5,
     "lateral": {"inertia": 190.0, "stiffness": 1.13e6, "damping": 90.0, "height": 4.0},
     "tyre": {
+        "contact": "leading_point",
         "half_contact_length": 0.32,
         "relaxation_length": 0.46,
         "tread_width_moment": 150.0,

@@ -169,6 +169,7 @@ def test_instability_at_exactly_one_corner_or_point_of_a_load_range(main_gear, l
 def test_third_order_divergence_is_found_to_the_last_bit(main_gear):
     """k_psi + (e C_F' + C_M) F_z = 0: a root at zero at every speed; the next float of k_psi is stable."""
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": 0.25,
         "relaxation_length": 1.0,
         "tread_width_moment": 0.0,

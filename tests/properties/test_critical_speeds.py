@@ -88,6 +88,7 @@ def test_critical_speeds_of_a_quadratic_with_known_zeros(main_gear):
     On the line lambda^2 = -a_2: at V = 2 that is 1 - c_psi V + ... of I_z = k_psi = c_psi = sigma = 1, e = a.
     """
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": 0.5,
         "relaxation_length": 1.0,
         "tread_width_moment": 0.0,
@@ -123,6 +124,7 @@ def test_a_symmetric_pair_of_small_real_roots_is_no_critical_speed(main_gear):
     """H_2 = 0 also where two real roots are +-r; here r = 4.9e-4 1/s at 1 m/s, and no root is on the axis."""
     r_squared = 2.0**-22
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": 0.5,
         "relaxation_length": 1.0,
         "tread_width_moment": 0.0,
@@ -181,6 +183,7 @@ def test_critical_speed_of_divergence(main_gear):
 def test_a_gear_that_is_marginal_at_every_speed_has_no_critical_speed(main_gear, stiffness, caster, half_length, relaxation):
     """e = a + sigma, no damping: a pair stays on the axis. In binary 0.4 - 0.1 - 0.3 is 5.6e-17, which crosses nothing."""
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": half_length,
         "relaxation_length": relaxation,
         "tread_width_moment": 0.0,

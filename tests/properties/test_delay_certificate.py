@@ -147,8 +147,7 @@ def check_random_gears(count, seed):
     rng, verdicts, base = np.random.default_rng(seed), [], study(T)
     for _ in range(count):
         order = int(rng.choice([3, 5]))
-        drawn = random_gear(rng, base, order=order, tyre=dict(STIFF, **_tyre(rng)), speed=_speeds(rng))
-        of = drawn.replace(tyre__contact="memory")
+        of = random_gear(rng, base, order=order, tyre=dict(STIFF, **_tyre(rng)), speed=_speeds(rng))
         p, load = _twin(of), of.envelope.loads[0]
         margin = float(rng.choice([0.0, 0.1, 1.0]))
         certificate = certify(of, {}, margin)
@@ -173,6 +172,7 @@ STIFF = {"law": "stiffness", "half_contact_length": 0.1, "relaxation_length": 0.
 def _tyre(rng):
     near = lambda value, factor: float(value * factor ** rng.uniform(-1, 1))  # noqa: E731  # a name for a formula
     return {
+        "contact": "memory",
         "half_contact_length": near(0.1, 2.0),
         "relaxation_length": near(0.3, 2.0),
         "cornering_stiffness": near(1e5, 20.0),
@@ -251,3 +251,14 @@ def test_vanishing_contact_length_is_the_leading_point():
         assert certify(of, {}, 0.0).proved == tangent.proved
         limit = [linear_gear(of.replace(tyre__contact=c)).abscissa(20.0, F_Z)[0] for c in ("memory", "leading_point")]
         assert limit[0] == pytest.approx(limit[1], abs=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("V", "of"), [(0.2, O), (0.5, T | {"k_delta": 6e9}), (8.0, T | {"k_psi": 4e9, "c_psi": 3e4}), (6.0, T)]
+)
+def test_motions_too_fast_for_a_field_are_found(V, of):
+    """Up to 120 rad of a motion lie within the contact line; the twin has them all on its collocated line."""
+    p = gear(of)
+    expected = rightmost(V, F_Z, p, nodes=260, count=4)
+    found = linear_gear(study(of, 0.1, 100.0)).roots(V, F_Z)[0]
+    assert (np.abs(expected[:, None] - found).min(axis=1) < 1e-8 * (1 + np.abs(expected))).all()

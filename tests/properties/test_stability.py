@@ -133,6 +133,7 @@ def test_worst_point_over_a_load_range_is_never_below_a_dense_grid(main_gear, se
 
 
 RESONANT_TYRE = {
+    "contact": "leading_point",
     "half_contact_length": 0.04,
     "relaxation_length": 0.2,
     "tread_width_moment": 100.0,
@@ -168,6 +169,7 @@ HEAVY_STRUT = {
     "caster_length": 0.2,
     "stiffness": 3.3e4,
     "tyre": {
+        "contact": "leading_point",
         "half_contact_length": 0.03,
         "relaxation_length": 0.26,
         "tread_width_moment": 570.0,
@@ -223,6 +225,7 @@ def test_worst_point_at_a_small_load_of_a_wide_range(main_gear):
 def test_worst_point_inside_a_rectangle_with_one_smooth_peak_is_exact(main_gear):
     """Peak at 25.7 m/s and 99.2 kN; flat enough to be found to rounding by zooming in."""
     tyre = {
+        "contact": "leading_point",
         "half_contact_length": 0.32,
         "relaxation_length": 0.46,
         "tread_width_moment": 150.0,
@@ -292,6 +295,7 @@ def scaled_gears(base, rng):
             },
             tyre=tyre
             | {
+                "contact": "leading_point",
                 "half_contact_length": tyre["half_contact_length"] * length,
                 "relaxation_length": tyre["relaxation_length"] * length,
                 "tread_width_moment": tyre["tread_width_moment"] * kappa,

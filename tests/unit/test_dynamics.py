@@ -25,6 +25,7 @@ from damperopt.symbols import data_values, symbolic
 TYRES = {
     "nonlinear": {
         "law": "nonlinear",
+        "contact": "leading_point",
         "half_contact_length": 0.1,
         "relaxation_length": 0.3,
         "tread_width_moment": 570.0,
@@ -34,6 +35,7 @@ TYRES = {
     },
     "stiff nonlinear": {
         "law": "nonlinear",
+        "contact": "leading_point",
         "half_contact_length": 0.15,
         "relaxation_length": 0.35,
         "tread_width_moment": 100.0,
@@ -43,6 +45,7 @@ TYRES = {
     },
     "linear": {
         "law": "linear",
+        "contact": "leading_point",
         "half_contact_length": 0.12,
         "relaxation_length": 0.25,
         "tread_width_moment": 270.0,
@@ -51,6 +54,7 @@ TYRES = {
     },
     "straight_tangent": {
         "law": "stiffness",
+        "contact": "leading_point",
         "half_contact_length": 0.1,
         "relaxation_length": 0.4,
         "cornering_stiffness": 4.0e5,

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from own_gear import feet_on_beam
 from scipy.linalg import expm
 
 import damperopt
@@ -96,14 +97,18 @@ def test_stiffness_of_the_parts_by_hand(configs):
     E, L, gamma, b = 207e9, 0.55, 0.72, 0.18
     design = {"c_lambda": 3e4, "I_arm": 1e-6, "L": L, "gamma": gamma, "b": b}
     design |= {"A_link": 2e-4, "A_support": 1.5e-4, "A_piston": 6e-4, "rod_diameter": 0.014, "s_damper": 0.009}
+    design |= {"I_hinge": 5e-7, "I_foot": 4e-7}
+    study = study.replace(damper__links={"form": "a_frame"})
     link = elastic_linkage(study, design)
     w, leg = L / 2, math.hypot(L, L / 4)
-    assert float(link.links) == pytest.approx(2 * E * 2e-4 / leg * (w / 2 / leg) ** 2, rel=1e-12)
+    lower = 2 * E * 2e-4 / leg * (w / 2 / leg) ** 2, 1 / feet_on_beam(E, 5e-7, L, w, 0.0)
+    assert float(link.links) == pytest.approx(1 / (1 / lower[0] + 1 / lower[1]), rel=1e-12)
     legs = math.hypot(L, b + w / 2), math.hypot(L, b - w / 2)
     support = E * 1.5e-4 * w**2 / (legs[0] ** 3 + legs[1] ** 3)
     oil = 2 * 1e9 * 6e-4 / (0.009 + 0.02)
     rod = E * math.pi / 4 * 0.014**2 / (2 * 0.009 + 0.12)
-    assert float(link.series) == pytest.approx(1 / (1 / support + 1 / oil + 1 / rod), rel=1e-12)
+    foot = feet_on_beam(E, 4e-7, L, w, b)
+    assert float(link.series) == pytest.approx(1 / (1 / support + foot + 1 / oil + 1 / rod), rel=1e-12)
 
 
 @pytest.mark.parametrize("c", [1.0, 3e3, 4e4, 1e6])

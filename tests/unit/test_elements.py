@@ -222,6 +222,7 @@ ELL = DESIGN["L"] * np.sin(DESIGN["gamma"])
 SPEED, LOAD = 40.0, 150e3
 SILENT = {
     "law": "nonlinear",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "cornering_coefficient": 0.0,

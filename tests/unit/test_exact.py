@@ -212,6 +212,7 @@ TYRES = {
 
 def study_at_random(base, rng, law, order, rake):
     common = {"half_contact_length": float(rng.uniform(0.05, 0.3)), "relaxation_length": float(rng.uniform(0.1, 0.9))}
+    common |= {"contact": "leading_point"}
     return base.replace(
         gear__order=order,
         gear__rake_angle=float(rng.uniform(-1, 1)) if rake else 0.0,

@@ -120,4 +120,6 @@ def test_materials_without_data_have_no_law():
 
 def test_the_usual_spectrum_is_called_typical():
     assert words_of(Spectrum()).startswith("typical spectrum, of no aircraft: 20000 flights")
+    assert "6 turns, 1 tow and 1 landing transient a flight" in words_of(Spectrum())
+    assert "1 turn, 0 tows and 2 landing transients" in words_of(Spectrum(turns=1.0, tows=0.0, landings=2.0))
     assert words_of(Spectrum(flights=5e4)).startswith("spectrum as given: 50000 flights")

@@ -55,7 +55,7 @@ def test_both_views_have_one_scale(topology):
 def test_legs_stand_apart_on_a_hinge_line(topology, feet, configs):
     """Two legs from feet that are half the link apart; of UTAS arm and damper from 2 b apart."""
     study = damperopt.load(configs / "main_gear.yaml").replace(damper__topology=topology)
-    design = DESIGN | {"A_link": 1e-4, "A_support": 1e-4}
+    design = DESIGN | {"A_link": 1e-4, "A_support": 1e-4, "I_hinge": 2e-7, "I_foot": 2e-7}
     lines = sorted(hinge_lines(study.damper.members(design)), key=lambda line: line[0, 2])
     height = DESIGN["L"] * np.cos(DESIGN["gamma"])
     assert [line[0, 2] for line in lines] == pytest.approx([-height, height])

@@ -57,6 +57,16 @@ def test_drift_landing():
     assert loads.yaw_torque == pytest.approx(56.25e3 * 0.12)
 
 
+# 14 CFR 25.511(e), read at faraim.org: not below 1 g, 50 % of 0.5 to the side, drag at each inflated tyre as without a flat one
+def test_flat_tyre():
+    assert load_cases()["flat_tyre"](kind="flat_tyre").off(MAIN) == "needs two wheels"
+    twin = Context(**{**vars(MAIN), "wheels": 2, "half_track": 0.4, "trail": 0.0})
+    loads = loads_of("flat_tyre", twin)
+    assert (loads.vertical, loads.side, loads.drag) == pytest.approx((150e3, 37.5e3, 60e3))
+    assert loads.yaw_torque == pytest.approx(37.5e3 * 0.12 + 60e3 * 0.4)
+    assert loads_of("flat_tyre", Context(**{**vars(twin), "gear": "nose"})).drag == 0
+
+
 # 14 CFR 25.487(b), read at faraim.org: load factor 20 on the unsprung weight
 def test_rebound_loads_the_strut_alone():
     assert loads_of("rebound") is None

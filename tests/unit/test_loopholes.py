@@ -17,13 +17,21 @@ STEEL = Material.model_validate("AISI 4340")
 DESIGNS = {
     "boeing": {"c_lambda": 3e4, "k_lambda": 4e6},
     "utas": {"c_lambda": 3e4, "I_arm": 1.1e-6, "b": 0.18},
-    "arreaza": {"c_lambda": 3e4, "I_arm": 1.1e-6, "b": 0.18, "A_support": 1.7e-4},
+    "arreaza": {"c_lambda": 3e4, "I_arm": 1.1e-6, "b": 0.18, "A_support": 1.7e-4, "I_foot": 3e-7},
 }
 THIN = [
     {"family": "tube", "thickness_ratio": 0.002},
     {"family": "i_section", "thickness_ratio": 0.004, "aspect_ratio": 1.0},
 ]
-REST = {"L": 0.56, "gamma": 0.75, "A_link": 2.3e-4, "A_piston": 7e-4, "rod_diameter": 0.012, "s_damper": 0.0102}
+REST = {
+    "L": 0.56,
+    "gamma": 0.75,
+    "A_link": 2.3e-4,
+    "I_hinge": 4e-7,
+    "A_piston": 7e-4,
+    "rod_diameter": 0.012,
+    "s_damper": 0.0102,
+}
 
 
 def problem(configs, topology, **changes):
@@ -60,15 +68,42 @@ def test_hinges_are_as_wide_as_the_strut_has_room(configs, topology):
         rows(configs, topology, {"damper__links": links | {"hinge_width": 0.3}})
 
 
+def beside(half):
+    """What a beam out to `half` has beside a strut 0.14 m wide, with a corner of 3 mm."""
+    return (half - 0.07 + math.hypot(half - 0.07, 0.006)) / 2
+
+
 def test_roots_beside_the_axis_hang_on_a_beam(configs):
-    """Weighed, 2 b of the arm's section, and as soft as it is long."""
+    """Weighed, twice what b leaves beside the strut, of the arm's section, and as soft as it is long."""
     found, at = problem(configs, "utas")
     parts = [found.parts(at | {"b": b}) for b in (0.1, 0.3)]
-    assert parts[1]["hinge line"] == pytest.approx(3 * parts[0]["hinge line"])
-    stiffness = [found.yaw_numbers(at | {"b": b})["torsional_stiffness"] for b in (1e-4, 0.3)]
+    near, far = (beside(half) for half in (0.1, 0.3))
+    assert parts[1]["hinge line"] == pytest.approx(far / near * parts[0]["hinge line"])
+    stiffness = found.yaw_numbers(at | {"b": 0.3})["torsional_stiffness"]
     length = math.hypot(0.56, 0.3)
     clamped = 3 * 207e9 * 1.1e-6 / length**3 * (0.56 * math.sin(0.75) * length / 0.56) ** 2
-    assert stiffness[1] == pytest.approx(clamped / (1 + 3 * 0.3 / length))
+    assert stiffness == pytest.approx(clamped / (1 + 3 * far / length))
+
+
+@pytest.mark.parametrize("topology", DESIGNS)
+def test_a_wide_hinge_hangs_on_a_long_beam(configs, topology):
+    """Of legs twice as far apart the beam is more than twice as heavy, bends more, and never has no length."""
+    narrow, wide, none = ({"damper__links": {"hinge_width": width, "strut_width": 0.14}} for width in (0.24, 0.48, 0.1))
+    weights = [
+        problem(configs, topology, **changes)[0].parts({**REST, **DESIGNS[topology]}) for changes in (narrow, wide, none)
+    ]
+    beams = [parts["link hinges"] for parts in weights]
+    a, b, least = beside(0.12), beside(0.24), beside(0.05)
+    assert beams[1] == pytest.approx(b / a * beams[0])
+    assert beams[2] == pytest.approx(least / a * beams[0])
+    assert 0 < least < 0.003
+    asked = [rows(configs, topology, changes)["hinge_limit"] for changes in (narrow, wide)]
+    F = 14.4e3 / (0.56 * math.sin(0.75))
+    bent = [
+        F * 0.56 * a / w / (math.pi / 32 * 0.5904 * (4e-7 * 64 / math.pi / 0.5904) ** 0.75) for a, w in ((a, 0.24), (b, 0.48))
+    ]
+    pushed = F / 2 / math.sqrt(4e-7 * 16 * math.pi * 0.09 / 1.64)
+    assert asked == pytest.approx([4 / 3 * math.log((one + pushed) / 1103e6) for one in bent])
 
 
 def test_nothing_rests_on_a_stop(configs):

@@ -105,13 +105,12 @@ def test_wall_buckling_by_hand(load, ratio, gamma):
 
 
 def test_lug_by_hand():
-    """20 kN, D 16, t 10, W 40, e 26 mm: bearing 125, shear-out 20/(2 10 18) = 55.56, net tension 83.33 MPa; 26/24 - 1."""
+    """20 kN, D 16, t 10, W 40, e 26 mm: bearing 125, shear-out 20/(2 10 18) = 55.56, net tension 83.33 MPa."""
     found = lug_margins("lug", "side_load", 20e3, Lug(0.016, 0.010, 0.040, 0.026), STEEL)
     assert of(found, "bearing").value == pytest.approx(1172 / (1.5 * 125) - 1)
     assert of(found, "shear-out").value == pytest.approx(1172 / math.sqrt(3) / (1.5 * 20e3 / 360) - 1)
     assert of(found, "net tension").value == pytest.approx(1172 / (1.5 * 20e3 / 240) - 1)
-    assert of(found, "edge distance").value == pytest.approx(26 / 24 - 1)
-    fitted = lug_margins("lug", "side_load", 20e3, Lug(0.016, 0.010, 0.040, 0.026), STEEL, (1.5, 1.15, 1.5))
+    fitted = lug_margins("lug", "side_load", 20e3, Lug(0.016, 0.010, 0.040, 0.026), STEEL, (1.5, 1.15))
     assert of(fitted, "bearing").value == pytest.approx(1172 / (1.5 * 1.15 * 125) - 1)
     given = STEEL.model_copy(update={"bearing_ultimate_strength": 1600e6, "shear_ultimate_strength": 700e6})
     asked = lug_margins("lug", "side_load", 20e3, Lug(0.016, 0.010, 0.040, 0.026), given)

@@ -11,6 +11,7 @@ from damperopt import figures as plots
 from damperopt.optimum.region import feasible_region
 from damperopt.output import folder as output
 from damperopt.stability.linear import LinearModel
+from damperopt.stability.screening import worst_abscissae_of
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +122,16 @@ def test_records_of_certificate_and_point_come_back_as_they_were(solved):
     assert again.certificate == solved[1].certificate
     assert again.stability == solved[1].stability
     assert isinstance(again.certificate, damperopt.Certificate)
+
+
+def test_region_of_an_elastic_gear_has_the_signs_of_every_node(configs):
+    """Nodes away from the limit are not looked at one by one, and yet tell what their eigenvalues would."""
+    study = damperopt.load(configs / "main_gear.yaml").replace(requirements__decay=None, requirements__damping_ratio=None)
+    design = study.start | {"c_lambda": 1.5e4, "I_arm": 1.2e-6, "L": 0.53, "gamma": 0.69, "b": 0.17, "A_piston": 4e-4}
+    region = feasible_region(study, design, points=18)
+    X, Y = np.meshgrid(region.x, region.y)
+    designs = np.tile(list(design.values()), (X.size, 1))
+    designs[:, 0], designs[:, 1] = X.ravel(), Y.ravel()
+    stable = worst_abscissae_of(LinearModel(study), study, designs) < -0.1
+    assert 20 < stable.sum() < X.size - 20
+    assert ((region.stability > 0).ravel() == stable).all()

@@ -107,6 +107,7 @@ WIDER = [
     {**LAW, "half_contact_length": TABLE},
     {
         "law": "magic_formula",
+        "contact": "leading_point",
         "half_contact_length": TABLE,
         "coefficients": {
             **{"FNOMIN": 1e5, "UNLOADED_RADIUS": 0.6, "PCY1": 1.4, "PDY1": 0.8, "PDY2": -0.1, "PKY1": -12.0, "PKY2": 1.2},

@@ -5,10 +5,15 @@ import numpy as np
 import pytest
 
 import damperopt
+from damperopt.optimum.conditions import Slots, StableFactors
+from damperopt.optimum.exchange import first_points, solve_envelope
 from damperopt.optimum.problem import DesignProblem
 from damperopt.optimum.program import ElasticFactorProgram, ElasticHurwitzProgram, FactorProgram, HurwitzProgram
 from damperopt.optimum.scan import sobol_designs
 from damperopt.optimum.solve import NlpSolver
+
+LIGHTEST = 14.1650156
+"""kg: main_gear.yaml without decay and damping ratio, from four starts by factors, and from each of these by Hurwitz."""
 
 POINTS = [(5.0, 150e3), (22.0, 150e3), (60.0, 100e3)]
 
@@ -97,3 +102,27 @@ def test_parameter_gradient_is_that_of_solving_again(problem, design):
         moved = [tuple(point[i] + sign * step * (i == column) for i in range(2)) for sign in (1, -1)]
         up, down = (solver.solve(base.design, [p]).objective for p in moved)
         assert base.gradient.points[0, column] == pytest.approx((up - down) / (2 * step), rel=2e-2, abs=1e-9)
+
+
+def test_factors_pass_where_real_roots_meet(configs):
+    """The main gear's own start: two real roots, neighbours of two others, meet at 5 m/s before the lightest design is met."""
+    study = damperopt.load(configs / "main_gear.yaml").replace(requirements__decay=None, requirements__damping_ratio=None)
+    solver = NlpSolver(DesignProblem(study))
+    found = solve_envelope(solver, study.start, first_points(solver), FactorProgram)
+    assert found.solved
+    assert found.solution.objective == pytest.approx(LIGHTEST, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("real", "together"),
+    [
+        ([-88.0, -60.001, -60.0, -38.6], [(126.6, 3396.8), (120.001, 3600.06)]),
+        ([-5.0, -3.0, 3.0], [(8.0, 15.0)]),
+        ([0.0, 0.0, -4.0, -4.0], [(0.0, 0.0), (8.0, 16.0)]),
+    ],
+)
+def test_real_roots_that_are_nearest_share_a_factor(real, together):
+    slots = Slots([[1.0, *ca.vertsplit(ca.SX.sym("a", len(real)))]], ca.SX.sym("rate", 1))
+    numbers = StableFactors(slots).numbers(np.array([real], complex), np.array([2.0]), 1)
+    pairs = numbers.variables.start[: len(together) * 2].reshape(-1, 2) * [1, 4]
+    assert pairs == pytest.approx(np.array(together))

@@ -335,6 +335,7 @@ def test_diverging_gear_is_stopped_and_called_so(study, interpreted):
     """A linear tyre with a destabilising moment that no stiffness stands against."""
     tyre = {
         "law": "linear",
+        "contact": "leading_point",
         "half_contact_length": 0.1,
         "relaxation_length": 0.3,
         "cornering_slope": 1.0,

@@ -299,6 +299,7 @@ def test_linear_gear_has_the_matrix_and_eigenvalues_of_the_twin(study, layout, o
 
 SILENT = {
     "law": "nonlinear",
+    "contact": "leading_point",
     "half_contact_length": 0.1,
     "relaxation_length": 0.3,
     "cornering_coefficient": 0.0,

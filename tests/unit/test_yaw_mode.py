@@ -47,7 +47,7 @@ def test_waves_of_the_contact_line_do_not_pass_for_the_yaw(configs):
     """With memory: of all roots the one that follows the yaw of the gear with a line that follows its leading point."""
     study = damperopt.load(configs / "main_gear.yaml")
     design = {"c_lambda": 3e4, "I_arm": 1e-6, "L": 0.56, "gamma": 0.75, "b": 0.18, "A_piston": 7e-4, "rod_diameter": 0.012}
-    design |= {"s_damper": 0.01, "A_link": 2.3e-4, "A_support": 1.7e-4}
+    design |= {"s_damper": 0.01, "A_link": 2.3e-4, "A_support": 1.7e-4, "I_hinge": 4e-7, "I_foot": 3e-7}
     speeds = np.geomspace(5, 100, 40)
     lines = [study.replace(tyre__contact=contact) for contact in ("leading_point", "memory")]
     point, memory = (yaw_modes(damperopt.linear_gear(line, design), speeds, 150e3) for line in lines)

@@ -1,7 +1,7 @@
 """Stability charts of the thesis, Figs 3.4 to 3.29, each traced from the values of its caption.
 
 The figures themselves are not at hand: ranges of the axes are a choice, and so are values that a caption does not give (three
-speeds, lengths, angles, side distances and moduli). Each figure is traced in four forms, from what is printed to what is right:
+speeds, lengths, angles, side distances and moduli). Each figure is traced in five forms, from what is printed to what is right:
 
 `coefficients`
     the printed characteristic coefficients, misprints and all;
@@ -10,7 +10,9 @@ speeds, lengths, angles, side distances and moduli). Each figure is traced in fo
 `published`
     signs put right, stiffness and damping of the layout as printed;
 `planar`
-    stiffness and damping by virtual work.
+    stiffness and damping by virtual work;
+`memory`
+    the same on a tyre whose contact line remembers: what contact memory changes in a statement, beside `planar`.
 """
 
 from __future__ import annotations
@@ -40,13 +42,14 @@ __all__ = [
     "trace_figure",
 ]
 
-FORMS: dict[str, tuple[str, type[Plane]]] = {
-    "coefficients": ("published", PrintedPlane),
-    "matrix": ("published", PrintedTreadMoment),
-    "published": ("published", Plane),
-    "planar": ("planar", Plane),
+FORMS: dict[str, tuple[str, type[Plane], str]] = {
+    "coefficients": ("published", PrintedPlane, "leading_point"),
+    "matrix": ("published", PrintedTreadMoment, "leading_point"),
+    "published": ("published", Plane, "leading_point"),
+    "planar": ("planar", Plane, "leading_point"),
+    "memory": ("planar", Plane, "memory"),
 }
-"""Geometry of the damper, and what gives the matrices."""
+"""Geometry of the damper, what gives the matrices, and the contact line of the tyre."""
 
 MISPRINTS_OF = {
     "boeing": ("(3-17)", "(3-18)", "(3-19)"),
@@ -142,8 +145,8 @@ def trace_figure(figure: ThesisFigure, study: Study, form: str) -> StabilityChar
     -------
     StabilityChart
     """
-    geometry, plane_type = FORMS[form]
-    gear = _gear(figure, study, geometry)
+    geometry, plane_type, contact = FORMS[form]
+    gear = _gear(figure, study, geometry).replace(tyre__contact=contact)
     name, low, high = figure.x
     if figure.topology == "utas" and name == "c_lambda" and geometry != "published":
         high /= PRINTED_TOO_LITTLE  # so that the curves fill the figure

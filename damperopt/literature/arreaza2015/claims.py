@@ -62,6 +62,12 @@ def _words(record: StabilityChart, numbers: np.ndarray) -> str:
     return f"{', '.join(f'{n:.3g}' for n in numbers)} for {name} {values} {unit}"
 
 
+def _ratio(needed: np.ndarray) -> float:
+    """Largest over least; infinite where some need no damping, 1 where none does."""
+    least, largest = float(needed.min()), float(needed.max())
+    return largest / least if least > 0 else np.inf if largest > 0 else 1.0
+
+
 def _median(record: StabilityChart) -> np.ndarray:
     """(families,) over the levels."""
     return np.median(_needed(record), axis=1)
@@ -85,7 +91,7 @@ def _slow_needs_more_when_soft(record: StabilityChart) -> Verdict:
 def _stiffness_share(record: StabilityChart) -> np.ndarray:
     """(families,) largest over least damping needed along the vertical axis."""
     needed = _needed(record)
-    return needed.max(axis=1) / needed.min(axis=1)
+    return np.array([_ratio(row) for row in needed])
 
 
 def _stiffness_matters_less(record: StabilityChart) -> Verdict:
@@ -147,8 +153,7 @@ def _larger_area(record: StabilityChart, other: StabilityChart) -> Verdict:
 
 def _spread(record: StabilityChart) -> float:
     """Largest over least median damping needed, between the families."""
-    needed = _median(record)
-    return float(needed.max() / needed.min())
+    return _ratio(_median(record))
 
 
 def _closer_together(record: StabilityChart, other: StabilityChart) -> Verdict:

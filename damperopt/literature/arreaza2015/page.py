@@ -33,6 +33,12 @@ MISPRINTED = ("3.5", "3.12", "3.23")
 SCARCELY = 0.05
 """Part of the plane below which a chart says nothing."""
 
+REMEMBERS = (
+    "With contact memory: without it (planar) it may hold. At 40 m/s a large part of the plane then needs little damping or "
+    "none, and comparisons turn on what is left."
+)
+"""Why a claim differs in the form `memory`, where no other reason is known."""
+
 CLAIMS = {**CHART_CLAIMS, **RESPONSE_CLAIMS}
 
 Shown = StabilityChart | Sequence[Response]
@@ -78,7 +84,8 @@ def judge(figure: str, form: str, claim: Claim, *shown: Shown) -> Row:
         verdict = Verdict(False, "next to nothing is stable")
         return Row(figure, form, claim.text, verdict, "The misprinted coefficients (erratum 5) are those of an unstable gear.")
     verdict = claim.holds(*shown)
-    return Row(figure, form, claim.text, verdict, "" if verdict.agrees else claim.why_not)
+    reason = claim.why_not or (REMEMBERS if form == "memory" else "")
+    return Row(figure, form, claim.text, verdict, "" if verdict.agrees else reason)
 
 
 def _stable_part(record: StabilityChart) -> float:

@@ -26,13 +26,15 @@ class LeadingPoint(ContactLine):
 
         The leading point y + eta + a sin(theta) stays on the ground but for what the string gives way; thesis (2-14).
 
-        y' = V sin(theta) - (V/sigma) y cos(theta) - d/dt(eta + a sin(theta)); both slip angles are atan(y/sigma).
+        y' = V sin(theta) - (V/sigma) y cos(theta) - d/dt(eta + a sin(theta)); both slip angles are atan(y/sigma). As the
+        footprint grows, its front moves over the ground at V + a': a' sin(theta) falls out, and V/sigma is (V + a')/sigma.
         """
         # V speed, theta swivel, eta lateral position of the contact centre, a half contact length, sigma relaxation length
         (y,) = x
         _, _, sigma, a = linear
         V, theta, theta_t, eta_t = wheel.speed, wheel.swivel, wheel.swivel_rate, wheel.lateral_rate
-        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - V / sigma * y * cos(theta)
+        front = V * cos(theta) + linear.half_contact_length_rate
+        y_t = V * sin(theta) - eta_t - a * cos(theta) * theta_t - front / sigma * y
         alpha = atan(y / sigma)
         return Slips((y_t,), alpha, alpha)
 
@@ -44,4 +46,4 @@ class LeadingPoint(ContactLine):
 
     def leaves_out(self) -> tuple[str, ...]:
         """The memory of the footprint."""
-        return ("contact memory of the tyre (tyre.contact leading_point: several contact lengths per wavelength needed)",)
+        return ("contact memory of the tyre (tyre.contact leading_point; memory has it)",)

@@ -41,6 +41,10 @@ class Moreland(ContactLine):
         rates = V * (sin(theta) - cos(theta) * slip) - eta_t, (tan_F - slip) / self.time_constant
         return Slips(rates, atan(tan_F), atan(slip))
 
+    def side_stiffness(self, linear: Linear) -> Expr:
+        """k_y [N/m]."""
+        return self.lateral_stiffness
+
     def response(self, s: Expr, linear: Linear, speed: Expr = 1.0) -> tuple[Expr, Expr, Expr, Expr]:
         """u = (theta - s eta)/(s + (k_y/C_Fa)/(1 + tau V s))."""
         C_Fa, C_Ma, *_ = linear

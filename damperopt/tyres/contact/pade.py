@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from ...expressions.calculus import Expr
 from ...quantities.record import refuse
+from ...quantities.units import Quantity
 from ..string import StringLine, Weights
 
 __all__ = ["Pade"]
@@ -24,11 +25,15 @@ class Pade(StringLine):
     """n of the approximation; 1 with `line` von_schlippe or parabola alone."""
     line: Literal["memory", "von_schlippe", "parabola"] = "memory"
     """The contact line whose delay is approximated."""
+    damping_time: Annotated[float, Quantity("s", above=0, example="2.6 ms")] | None = None
+    """b/c of the string's side damping b and stiffness c per length [s]; left out: no damping. Not with `line` parabola."""
 
     @model_validator(mode="after")
     def _holds_its_moment(self) -> Self:
         if self.order == 1 and self.line == "memory":
             raise refuse("order", "1 holds no first moment of the line", "2 or more, or line: von_schlippe")
+        if self.damping_time is not None and self.line == "parabola":
+            raise refuse("damping_time", "line parabola, whose slope is no deflection", "line: memory or von_schlippe")
         return self
 
     def weights(self, sigma: Expr, a: Expr) -> Weights:
@@ -37,6 +42,10 @@ class Pade(StringLine):
 
         lines = {"memory": memory.Memory, "von_schlippe": von_schlippe.VonSchlippe, "parabola": parabola.Parabola}
         return lines[self.line](contact=self.line).weights(sigma, a)
+
+    def side_damping(self) -> Expr | None:
+        """`damping_time`."""
+        return self.damping_time
 
     def delay(self, z: Expr) -> tuple[Expr, Expr, Expr]:
         """E = N(-z)/N(z) with N = sum of c_k z^k, and phi1, chi of that E."""
@@ -53,4 +62,8 @@ class Pade(StringLine):
 
     def leaves_out(self) -> tuple[str, ...]:
         """How far an approximation reaches."""
-        return (f"contact memory beyond 2 a w/V = {self.order} (tyre.contact pade, order {self.order}; memory is exact)",)
+        found = f"contact memory beyond 2 a w/V = {self.order} (tyre.contact pade, order {self.order}; memory is exact)"
+        damped = (
+            "that damping of the carcass is a loss per cycle rather than per rate: with damping_time it grows with the speed"
+        )
+        return (found,) if self.damping_time is None else (found, damped)

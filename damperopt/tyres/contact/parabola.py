@@ -32,6 +32,10 @@ class Parabola(StringLine):
         """In an optimisation the Pade approximation of its delay."""
         return Pade(contact="pade", order=2, line="parabola") if purpose == "search" else self
 
+    def least_wave(self) -> float:
+        """Where force or moment is off by a tenth."""
+        return 3.0
+
     def leaves_out(self) -> tuple[str, ...]:
         """The shape between the ends."""
         return ("the shape of the contact line beyond a parabola (tyre.contact parabola; memory has it)",)

@@ -31,6 +31,10 @@ class VonSchlippe(StringLine):
         """In an optimisation the Pade approximation of its delay."""
         return Pade(contact="pade", order=2, line="von_schlippe") if purpose == "search" else self
 
+    def least_wave(self) -> float:
+        """Where force or moment is off by a tenth."""
+        return 4.0
+
     def leaves_out(self) -> tuple[str, ...]:
         """The shape between the ends."""
         return ("the shape of the contact line between its ends (tyre.contact von_schlippe; memory has it)",)

@@ -12,8 +12,9 @@ gear:
    collar: {inertia: 5 kg m^2, link_stiffness: 5e5 N m/rad,
             steering_stiffness: 1.5e6 N m/rad, steering_damping: 2000 N m s/rad}}
 tyre:
-  {law: arctangent, half_contact_length: 0.1 m, relaxation_length: 0.3 m, cornering_coefficient: 0.002 1/rad,
-   aligning_coefficient: 1 m/rad, aligning_slip_limit: 10 deg, tread_width_moment: 570 N m^2/rad}
+  {law: arctangent, contact: leading_point, half_contact_length: 0.1 m, relaxation_length: 0.3 m,
+   cornering_coefficient: 0.002 1/rad, aligning_coefficient: 1 m/rad, aligning_slip_limit: 10 deg,
+   tread_width_moment: 570 N m^2/rad}
 damper: {topology: rotational, torsional_stiffness: 0 N m/rad, torsional_damping: 300 N m s/rad}
 envelope: {speed: {min: 5 m/s, max: 100 m/s}, vertical_load: 150 kN}
 """

@@ -52,6 +52,7 @@ class Power:
 
 
 def product(c: Any, factor: float) -> Any:
+    """A coefficient times a number."""
     return c * factor if isinstance(c, Interval) else of(c) * factor
 
 
@@ -69,6 +70,7 @@ def joined(first: tuple[tuple[Any, Atom], ...], second: tuple[tuple[Any, Atom], 
 
 
 def positive(u: Power) -> Power:
+    """The magnitude."""
     return replace(u, sign=1)
 
 

@@ -59,11 +59,13 @@ def added(p: np.ndarray, q: np.ndarray) -> Interval:
 
 
 def entropy(w: np.ndarray) -> Interval:
+    """-w ln w - (1 - w) ln(1 - w)"""
     other = 1.0 - of(w)
     return -(of(w) * logarithm(w)) - other * logarithm(other)
 
 
 def softplus(d: Interval) -> Interval:
+    """ln(1 + e^d)"""
     return monotone(lambda x: np.logaddexp(0.0, x), d)
 
 
@@ -74,6 +76,7 @@ def short(d: Interval) -> Interval:
 
 
 def chord(f: tuple[Interval, Interval], d: Interval, otherwise: np.ndarray) -> np.ndarray:
+    """Slope of the chord over intervals d, from values f at their ends; of no width: another slope."""
     width = d.high - d.low
     wide = width > 1e-9 * (1 + np.abs(d.high))
     with np.errstate(all="ignore"):
@@ -81,6 +84,8 @@ def chord(f: tuple[Interval, Interval], d: Interval, otherwise: np.ndarray) -> n
 
 
 def either(first: np.ndarray, one: Line, other: Line) -> Line:
+    """One line on some boxes, the other on the rest."""
+
     def chosen(a: Interval, b: Interval) -> Interval:
         mask = np.reshape(first, (-1,) + (1,) * (max(a.low.ndim, b.low.ndim) - 1))
         return Interval(np.where(mask, a.low, b.low), np.where(mask, a.high, b.high))

@@ -35,5 +35,5 @@ class Solver(Record):
     """Speeds of the grid on which eigenvalues are checked at the end."""
     bound_gap: Annotated[float, Quantity("1", above=0, at_most=1)] = 1e-3
     """Gap between the mass of a design and its lower bound at which the search for the bound ends."""
-    bound_seconds: Annotated[float, Quantity("s", at_least=0, at_most=86400)] = 4.0
+    bound_seconds: Annotated[float, Quantity("s", at_least=0, at_most=86400)] = 2.0
     """Processor time of that search; 0: no bound is looked for [s]."""

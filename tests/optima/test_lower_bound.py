@@ -50,7 +50,7 @@ def test_the_gap_of_a_known_optimum_closes(boeing):
 
 
 def test_a_mass_above_the_optimum_is_not_proved():
-    study = study_of("boeing", solver__bound_seconds=2.0)
+    study = study_of("boeing", solver__bound_seconds=1.5)
     bound = mass_bound(study, found(1.02 * OPTIMUM["boeing"]))
     assert not bound.finished
     assert bound.mass <= OPTIMUM["boeing"]
@@ -144,16 +144,15 @@ def test_force_of_a_released_chain_hangs_on_three_numbers():
         assert 0.99 * event.damper_force <= force <= event.damper_force
 
 
-@pytest.mark.parametrize("torque", [1.5, 1.6])
-def test_no_bound_of_utas_lies_above_a_design_that_exists(torque):
+def test_no_bound_of_utas_lies_above_a_design_that_exists():
     """With a factor 1.6, 16 starts ended at 15.052 kg where 13.115 kg exists."""
-    study = study_of("utas", requirements__limit_torque_factor=torque, solver__bound_seconds=1.5)
+    study = study_of("utas", requirements__limit_torque_factor=1.6, solver__bound_seconds=1.0)
     bound = mass_bound(study, found(15.052))
-    assert 9 < bound.mass <= {1.5: 13.18572, 1.6: 13.115 * 1.05}[torque]
+    assert 9 < bound.mass <= 13.115 * 1.05  # of version 0.1, whose working stroke was at the limit torque
 
 
 def test_true_structure_has_a_bound_below_its_optima():
-    study = study_of("arreaza", "main_gear", solver__bound_seconds=1.5)
+    study = study_of("arreaza", "main_gear", solver__bound_seconds=1.0)
     bound = mass_bound(study, found(14.165015621794101))  # without decay and damping ratio
     assert 10 < bound.mass < 14.165
     assert bound.unused == ("decay", "damping ratio")

@@ -28,6 +28,7 @@ with interrupts.at_once():
         thesis,
         tyre,
         validate,
+        verify,
     )
     from .commands.shared import err, out
     from .errors import DamperoptError, OutputError
@@ -44,6 +45,7 @@ app = typer.Typer(
 )
 IN_ORDER = (
     optimise,
+    verify,
     report,
     analyse,
     simulate,

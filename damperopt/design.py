@@ -10,8 +10,9 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from .cycles.requirement import check_limit_cycles, cycle_failure
+from .cycles.requirement import check_limit_cycles, cycle_failures
 from .errors import ConfigError, Unfinished
+from .lightest import mass_bound
 from .motion.exact import ExactSimulator
 from .optimum.answer import (
     SAME_MASS,
@@ -38,13 +39,7 @@ from .optimum.stock import StockSearch, of_chosen_sizes, of_stock
 from .proof.certify import certify
 from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
-from .results import (
-    Certificate,
-    DecayCheck,
-    DesignResult,
-    MassResult,
-    Verification,
-)
+from .results import Certificate, DecayCheck, DesignResult, MassResult, Verification
 from .stability.fail_safe import passive_rest
 from .study.components import optimisable
 from .study.study import Study
@@ -115,6 +110,7 @@ def optimise(
     result, stopped = _answer(solver, outcomes), False
     if search is not None:
         result, stopped = of_stock(study, search, result)
+    result = result.model_copy(update={"bound": mass_bound(study, result)})
     provenance = provenance_of(study, config_file, started, time.perf_counter() - clock)
     config = of_chosen_sizes(study, result).model_dump(mode="json")
     result = result.model_copy(update={"provenance": provenance, "config": config})
@@ -255,10 +251,7 @@ def _answer(solver: NlpSolver, outcomes: list[StartOutcome]) -> DesignResult:
 
 
 def _proved(solver: NlpSolver, best: EnvelopeSolution) -> tuple[EnvelopeSolution, Certificate]:
-    """The optimum with its certificate; where the proof finds a point that the exchange has missed, solved again with it.
-
-    With an actuator, so do the points that the proof without it finds.
-    """
+    """The optimum with its certificate; solved again with points that the proof, or that without an actuator, finds missed."""
     study, model = solver.problem.study, solver.problem.model
     rest = passive_rest(study)
     certificate = certify(study, best.solution.design, model=model)
@@ -346,9 +339,7 @@ def _checked(
             failures.append(
                 f"the yaw mode has the damping ratio {ratio:.5g} at {V:.6g} m/s, {F_z / 1e3:.6g} kN{_times(factor)}"
             )
-    cycles = check_limit_cycles(study, solution.design)
-    if cycles is not None and not cycles.passed:
-        failures.append(cycle_failure(cycles))
+    failures += cycle_failures(cycles := check_limit_cycles(study, solution.design))
     simulated = {} if decay is None else decay.peaks
     rows = margin_rows(study, solution.design, simulated)
     failures += [f"{m.part} fails {m.check} in {m.case} (margin {m.value:+.3g})" for m in rows if m.value < -MARGIN_ROUNDING]

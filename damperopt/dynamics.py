@@ -27,7 +27,7 @@ from .expressions.calculus import Expr, absolute, partial
 from .expressions.corners import Corners, Linear
 from .expressions.dae import DAE, NEWTON_STEPS
 from .linkages.elastic import elastic_linkage
-from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, damper_torque
+from .linkages.torque import CHAIN_STATES, OUTPUTS, ROTARY_OUTPUTS, Changes, damper_torque
 from .ports.linkage import Linkage
 from .ports.motion import Torque
 from .ports.wheel import Wheel
@@ -52,13 +52,13 @@ class Ride:
     ----------
     load_rate : Expr
         Of the vertical load [N/s].
-    stroke, stroke_rate : Expr or None
-        Of the shock strut [m], [m/s]; None: in balance with the load.
+    stroke, stroke_rate : Expr
+        Of the shock strut [m], [m/s]; without one they have no part in it.
     """
 
     load_rate: Expr
-    stroke: Expr = None
-    stroke_rate: Expr = None
+    stroke: Expr
+    stroke_rate: Expr
 
 
 def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | None = None) -> DAE:
@@ -82,13 +82,14 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     tyre, damper, strut = study.tyre, study.damper, study.gear.strut
     design = {variable.name: ca.SX.sym(variable.name) for variable in study.damper.variables()}
     speed, load, yaw_torque = ca.SX.sym("speed"), ca.SX.sym("load"), ca.SX.sym("yaw_torque")
-    stroke = study.gear.stroke(load) if ride is None or ride.stroke is None else ride.stroke
-    gear = study.gear.at(load, stroke, 0 if ride is None else _rate(stroke, load, ride))
+    stroke = study.gear.stroke(load) if ride is None or strut is None else ride.stroke
+    gear = study.gear.at(load, stroke, 0 if ride is None else ride.stroke_rate)
+    changes = () if ride is None else ((load, ride.load_rate), (ride.stroke, ride.stroke_rate))
 
     x = {state.name: ca.SX.sym(state.name) for state in gear.states()}
     wheels = gear.wheels(x, speed, load)
     if ride is not None:
-        wheels = tuple(_moving(wheel, load, ride) for wheel in wheels)
+        wheels = tuple(_moving(wheel, changes) for wheel in wheels)
     tyre_states = [_of_wheel(tyre.states, i, len(wheels)) for i in range(len(wheels))]
     strings = [[ca.SX.sym(state.name) for state in states] for states in tyre_states]
     contacts = [tyre.on_ground(wheel, string, corners) for wheel, string in zip(wheels, strings, strict=True)]
@@ -96,7 +97,7 @@ def build(symbols: SymbolicStudy, corners: Corners | None = None, ride: Ride | N
     attachment = gear.attachments(x)["damper"]
     measured = x | {state.name: own for state, own in zip(tyre_states[0], strings[0], strict=True)}
     context = Context(load, speed, axle=absolute(gear.caster_length), wanted=_wanted(damper, link, measured, speed))
-    torque = damper_torque(damper, link, design, corners, attachment, context)
+    torque = damper_torque(damper, link, design, corners, attachment, context, changes)
     if damper.actuator is not None:
         torque = _with_actuator(torque, damper.actuator, measured, speed, corners)
     motion = gear.rates(x, contacts, torque, yaw_torque, corners)
@@ -167,19 +168,17 @@ def _with_actuator(torque: Torque, actuator: Control, measured: Mapping[str, Exp
     return replace(with_it, states=states, rates=rates, relaxed=held)
 
 
-def _rate(expression: Expr, load: ca.SX, ride: Ride) -> Expr:
-    """Of an expression as load and stroke change, with the states held."""
-    by_load = partial(expression, load) * ride.load_rate
-    return by_load if ride.stroke is None else by_load + partial(expression, ride.stroke) * ride.stroke_rate
-
-
-def _moving(wheel: Wheel, load: ca.SX, ride: Ride) -> Wheel:
+def _moving(wheel: Wheel, changes: Changes) -> Wheel:
     """A wheel that load and stroke move too."""
+
+    def rate(expression: Expr) -> Expr:
+        return sum(partial(expression, of) * by for of, by in changes)
+
     return replace(
         wheel,
-        lateral_rate=wheel.lateral_rate + _rate(wheel.lateral, load, ride),
-        swivel_rate=wheel.swivel_rate + _rate(wheel.swivel, load, ride),
-        load_rate=_rate(wheel.load, load, ride),
+        lateral_rate=wheel.lateral_rate + rate(wheel.lateral),
+        swivel_rate=wheel.swivel_rate + rate(wheel.swivel),
+        load_rate=rate(wheel.load),
     )
 
 

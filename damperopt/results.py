@@ -10,6 +10,7 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from .answers.bound import MassBound
 from .answers.loads import LoadRow, MarginRow
 from .answers.older import completed
 from .answers.search import Infeasibility, LocalOptimum, Relaxation, Sensitivity, StartResult
@@ -29,6 +30,7 @@ __all__ = [
     "LoadRow",
     "LocalOptimum",
     "MarginRow",
+    "MassBound",
     "MassResult",
     "OperatingPoint",
     "Provenance",
@@ -165,6 +167,7 @@ class DesignResult(_Record):
     verification: Verification | None = None
     decay: DecayCheck | None = None
     limit_cycle: LimitCycleCheck | None = None
+    bound: MassBound | None = None
     decided_by: dict[str, float] = {}
     infeasibility: Infeasibility | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
@@ -240,8 +243,11 @@ class DesignResult(_Record):
         return f"<p>{title}</p><p>{escape(self.message)}</p><table>{cells}</table>"
 
     def to_json(self) -> str:
-        """JSON text; floats keep every digit."""
-        return json.dumps(self.model_dump(mode="json"), indent=2, allow_nan=False) + "\n"
+        """JSON text; floats keep every digit. The tree of the bound has a file of its own."""
+        data = self.model_dump(mode="json")
+        if data["bound"]:
+            data["bound"]["certificate"] = None
+        return json.dumps(data, indent=2, allow_nan=False) + "\n"
 
 
 def load_result(path: str | Path) -> DesignResult:

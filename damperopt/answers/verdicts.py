@@ -145,7 +145,7 @@ class LimitCycleCheck:
     Attributes
     ----------
     passed : bool
-        No stable cycle of more yaw was found, and no branch was lost.
+        No stable cycle of more yaw was found, no branch was lost, and no motion left the range of the model.
     limit, yaw_angle : float
         Largest amplitude allowed, and found [rad]; 0 where no stable cycle was found.
     speed, load : float
@@ -154,6 +154,8 @@ class LimitCycleCheck:
         Play of the apex joint to one side [m].
     branches, lost : int
         How many were followed, and on how many the method failed before their ends.
+    left : int
+        Motions that left the range of the model; what becomes of these is not known.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = FINITE
@@ -166,3 +168,4 @@ class LimitCycleCheck:
     gap: float
     branches: int
     lost: int
+    left: int

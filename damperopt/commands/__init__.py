@@ -13,6 +13,7 @@ from .studies import init, schema, validate
 from .sweep import sweep
 from .thesis import thesis
 from .tyre import tyre
+from .verify import verify
 
 __all__ = [
     "analyse",
@@ -30,4 +31,5 @@ __all__ = [
     "thesis",
     "tyre",
     "validate",
+    "verify",
 ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import ConfigError
-from .shared import ConfigArgument, OutputOption, out
+from .shared import ConfigArgument, OutputOption, all_or_nothing, bar, out
 
 if TYPE_CHECKING:
     from ..study.disturbances import Disturbance
@@ -52,11 +52,25 @@ def breakout(
     at_pressures = [(text, _at_pressure(study, text)) for text in pressure] if pressure else [("", study)]
     folder = run_folder(output, f"{file.stem}-breakout")
     rows: list[dict[str, Any]] = []
-    for text, own in at_pressures:
-        for words, disturbance in disturbances:
-            found = least_breakout(own, disturbance, V.tolist(), at_load, seconds)
-            rows.append({"pressure": text, "disturbance": words, "speed [m/s]": found.speed, "breakout [N m]": found.torque})
-            out.print(_sentence(own, text, words, found.torque, found.speed), soft_wrap=True, markup=False)
+    sentences: list[str] = []
+    with all_or_nothing(), bar() as shown:
+        task = shown.add_task("searching", total=len(at_pressures) * len(disturbances))
+        for text, own in at_pressures:
+            for words, disturbance in disturbances:
+                begin = ", ".join(filter(None, (text, words)))
+                shown.update(task, description=begin)
+
+                def tell(speed: float, torque: float, begin: str = begin) -> None:
+                    shown.update(task, description=f"{begin}, {speed:.3g} m/s, {torque:.3g} N m")
+
+                found = least_breakout(own, disturbance, V.tolist(), at_load, seconds, progress=tell)
+                rows.append(
+                    {"pressure": text, "disturbance": words, "speed [m/s]": found.speed, "breakout [N m]": found.torque}
+                )
+                shown.update(task, advance=1)
+                sentences.append(f"{begin}: {_answer(own, found.torque, found.speed)}")
+    for sentence in sentences:
+        out.print(sentence, soft_wrap=True, markup=False)
     listed = ", ".join(f"{speed:.3g}" for speed in V)
     out.print(
         f"\nBy exact simulation over {seconds:g} s at {listed} m/s, {at_load:g} N: no proof.", soft_wrap=True, markup=False
@@ -94,11 +108,10 @@ def _at_pressure(study: Study, text: str) -> Study:
     return changed
 
 
-def _sentence(study: Study, pressure: str, words: str, torque: float | None, speed: float) -> str:
-    begin = ", ".join(filter(None, (pressure, words)))
+def _answer(study: Study, torque: float | None, speed: float) -> str:
     if torque is None:
-        return f"{begin}: no breakout suffices at {speed:.3g} m/s"
+        return f"no breakout suffices at {speed:.3g} m/s"
     lever = study.damper.breakout_lever or study.gear.caster_length
     force = torque / lever
     at = f"{force / POUND:.3g} lbf ({force:.3g} N) at {1e3 * lever:.4g} mm"
-    return f"{begin}: {torque:.3g} N m, {at}; {speed:.3g} m/s asks for it"
+    return f"{torque:.3g} N m, {at}; {speed:.3g} m/s asks for it"

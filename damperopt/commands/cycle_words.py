@@ -14,6 +14,7 @@ from ..cycles.amplitude_map import AmplitudeMap
 from ..cycles.branches import Question, worded
 from ..cycles.criticality import Criticality
 from ..cycles.edge import Kicker, Threshold
+from ..cycles.elements import joints_of
 from ..cycles.orbit import Branch, Orbit
 from ..motion.measure import PEAKS
 from ..quantities.shown import shown
@@ -27,6 +28,9 @@ FATES = {
     "leaves": "leaves the range of the model",
 }
 
+SHOWN_LEFT = 3
+"""Motions that left the model, of which so many are named."""
+
 EXACT = 1e-6
 """Relative error of amplitude and period below which nothing is said of it."""
 
@@ -37,6 +41,7 @@ def show_cycles(
     branches: Sequence[Branch],
     begin: str = "hopf",
     sized: Mapping[str, float] = {},
+    left: Sequence[str] = (),
 ) -> None:
     """Branches in words, the answer first; beside the loads that the parts are sized for, where they are known."""
     axis, held = question.axis, []
@@ -48,10 +53,11 @@ def show_cycles(
     if not branches and begin == "simulation":
         console.print(f"\n[bold]no limit cycle found[/]: {escape(searched)}", soft_wrap=True)
         console.print(
-            "Motions after some releases at both ends and in the middle of the range all die, or leave the model; this is a "
+            "Of motions after some releases, at both ends and in the middle of the range, none settles on a cycle; this is a "
             "search, no proof that none exists.",
             soft_wrap=True,
         )
+        _show_left(console, left)
         return
     if not branches:
         console.print(f"\n[bold]no Hopf point[/]: {escape(searched)}", soft_wrap=True)
@@ -84,8 +90,18 @@ def show_cycles(
             console.print(f"  {escape(line)}", soft_wrap=True)
         if branch.error > EXACT:
             console.print(f"  accurate to {branch.error:.1g} of amplitude and period (intervals halved)", soft_wrap=True)
+        near = [o for o in branch.orbits if not o.label and abs(np.abs(o.multipliers).max() - 1) < branch.multiplier_error]
+        if branch.multiplier_error > EXACT and near:
+            console.print(
+                f"  [yellow]multipliers are accurate to {branch.multiplier_error:.1g}[/]: {len(near)} orbits are too near to "
+                "neutral for their stability to be known",
+                soft_wrap=True,
+            )
         if branch.kind == "hopf":
             _hidden(console, branch)
+    _show_left(console, left)
+    if begin == "hopf" and (joints := joints_of(question.study)):
+        console.print(f"Joints closed, without friction ({', '.join(joints)}): --from simulation has them.", soft_wrap=True)
 
 
 def _show_loads(console: Console, stable: Sequence[Orbit], sized: Mapping[str, float], unit: str) -> None:
@@ -104,19 +120,18 @@ def _show_loads(console: Console, stable: Sequence[Orbit], sized: Mapping[str, f
         )
 
 
-def kept(console: Console, branches: Sequence[Branch], limit: float) -> bool:
-    """Whether no stable cycle of more yaw [rad] was found and no branch lost; said in words."""
+def kept(console: Console, branches: Sequence[Branch], limit: float, unknown: Sequence[str]) -> bool:
+    """Whether no stable cycle of more yaw [rad] was found and nothing is unknown; said in words."""
     largest = " ".join(shown(limit, "rad"))
     larger = [orbit for branch in branches for orbit in branch.orbits if orbit.stable and orbit.amplitudes["yaw_angle"] > limit]
-    lost = [branch for branch in branches if branch.lost]
     if larger:
         words = f"[red]not kept[/]: {len(larger)} stable cycles of more than {largest} were found"
-    elif lost:
-        words = f"[yellow]undecided[/]: none of more than {largest} was found, but {len(lost)} branches were lost"
+    elif unknown:
+        words = f"[yellow]undecided[/]: none of more than {largest} was found, but {escape('; '.join(unknown))}"
     else:
-        words = f"[green]kept[/]: no stable cycle of more than {largest} was found (a search from these seeds, no proof)"
+        words = f"[green]kept[/]: no stable cycle of more than {largest} was found (a search, no proof)"
     console.print(words, soft_wrap=True)
-    return not (larger or lost)
+    return not (larger or unknown)
 
 
 def show_map(console: Console, found: AmplitudeMap) -> None:
@@ -135,6 +150,13 @@ def show_map(console: Console, found: AmplitudeMap) -> None:
             "that begins in this range arrives; take a wider one",
             soft_wrap=True,
         )
+
+
+def _show_left(console: Console, left: Sequence[str]) -> None:
+    """Motions of which nothing more is known."""
+    if left:
+        words = "; ".join(left[:SHOWN_LEFT]) + ("; ..." if len(left) > SHOWN_LEFT else "")
+        console.print(f"[bold]{len(left)} motions left the range of the model[/]: {escape(words)}", soft_wrap=True)
 
 
 def _size(orbit: Orbit) -> str:

@@ -44,6 +44,7 @@ def cycles(
     Exit code 0 also where the gear shimmies: that is an answer. 2: the question is not well posed; 3: --at-most is not kept.
     """
     from ..charts.plane import Axis
+    from ..cycles.amplitude_map import unknown
     from ..cycles.branches import Question, from_hopf_points
     from ..cycles.motions import from_motions
     from ..output.cycles import write_branches, write_cycle
@@ -86,11 +87,15 @@ def cycles(
     with all_or_nothing(), bar() as shown:
         task = shown.add_task("orbits", total=None)
 
-        branches = (from_hopf_points if begin == "hopf" else from_motions)(
-            question, lambda orbit: shown.update(task, advance=1)
-        )
+        def report(orbit: Any) -> None:
+            shown.update(task, advance=1)
+
+        if begin == "hopf":
+            branches, left = from_hopf_points(question, report), list[str]()
+        else:
+            branches, left = from_motions(question, report)
     sized = load_result(design).limit_event if design is not None else {}
-    show_cycles(out, question, branches, begin, sized)
+    show_cycles(out, question, branches, begin, sized, left)
 
     def write(place: Path) -> None:
         write_branches(place, branches, asked(question, begin))
@@ -104,7 +109,7 @@ def cycles(
 
     write_run(folder, write)
     out.print(f"\nResults in {folder}", soft_wrap=True, markup=False)
-    if limit is not None and not kept(out, branches, limit):
+    if limit is not None and not kept(out, branches, limit, unknown(question, branches, begin, left)):
         raise typer.Exit(3)
 
 

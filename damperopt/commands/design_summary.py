@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.markup import escape
 
+from ..answers.bound import bound_words
 from ..answers.stock import candidate_cells, stock_words
 from ..output.margins import critical_rows, margin_words
 from ..results import DesignResult, StockResult
@@ -67,6 +68,8 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         f"KKT residual {check.kkt_residual:.1g}; {check.agreeing_starts} of {len(result.starts)} starts end here",
         soft_wrap=True,
     )
+    if result.bound is not None:
+        console.print(escape(bound_words(result.bound)), soft_wrap=True)
     if result.decay is not None:
         decay = result.decay
         verdict = "[green]kept[/]" if decay.passed else "[red]NOT kept[/]"
@@ -83,7 +86,8 @@ def show_design(console: Console, result: DesignResult, study: Study) -> None:
         largest = " ".join(number_and_unit(cycle.yaw_angle, "rad")) if cycle.yaw_angle else "none"
         console.print(
             f"Limit cycles: {verdict}: largest stable one {largest} at {cycle.speed:.2f} m/s, {cycle.load / 1e3:g} kN, with "
-            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost; required "
+            f"{1e3 * cycle.gap:g} mm of play, on {cycle.branches} branches from motions, {cycle.lost} lost, "
+            f"{cycle.left} motions left the model; required "
             f"{' '.join(number_and_unit(cycle.limit, 'rad'))}; a search, no proof",
             soft_wrap=True,
         )

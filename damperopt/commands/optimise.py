@@ -28,6 +28,7 @@ def optimise(
 
     Exit code 0: solved and verified; 2: bad input; 3: infeasible; 4: solver or verification failure.
     """
+    from ..answers.sums import write_sums
     from ..design import combinations, optimise_each, rank
     from ..optimum.stock import of_chosen_sizes
     from ..output import write_report
@@ -73,6 +74,7 @@ def optimise(
                 shutil.copyfile(file.parent / named, copy)
         if len(studies) == 1:
             write_design(place, answered[0], ordered[0], figures)
+            write_sums(place)
             if figures:
                 write_report(place)
             return
@@ -82,6 +84,7 @@ def optimise(
             own = place / f"{position:02d}-{result.topology}-{result.material.replace(' ', '-')}"
             own.mkdir()
             write_design(own, answered[position - 1], result, figures and position == 1)
+            write_sums(own)
         if figures:
             write_report(place)
 

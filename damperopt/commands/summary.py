@@ -298,17 +298,21 @@ def _show_response(console: Console, found: PathResponse) -> None:
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
     table.add_column("contact line", no_wrap=True)
     for at in columns:
-        table.add_column(f"{found.contact_lengths[at]:.3g}", justify="right")
-    table.add_column("within 10 % from", justify="right")
+        table.add_column(f"{found.contact_lengths[at]:.3g}", justify="right", no_wrap=True)
+    table.add_column("within 10 % from", justify="right", no_wrap=True)
     for line in list(found.lines)[1:]:
         worst, least = 100 * found.errors(line).max(axis=0), found.holds_to(line)
-        table.add_row(line, *(f"{worst[at]:.2g} %" for at in columns), f"{least:.3g}" if math.isfinite(least) else "never")
+        table.add_row(line, *(_percent(worst[at]) for at in columns), f"{least:.3g}" if math.isfinite(least) else "never")
     console.print(
         f"Distance of force and moment at {found.load / 1e3:.4g} kN from those of the exact contact line (memory), over "
         "contact lengths per wave:",
         soft_wrap=True,
     )
     console.print(table)
+
+
+def _percent(value: float) -> str:
+    return "< 0.01 %" if value < 0.01 else f"{value:.2g} %" if value < 100 else f"{value:.0f} %"
 
 
 def _about_file(read: PropertyFile) -> list[str]:

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..charts.plane import Axis
 from .branches import Question, from_hopf_points
+from .elements import joints_of
 from .orbit import Branch
 
-__all__ = ["AmplitudeMap", "amplitude_map", "largest_stable"]
+__all__ = ["AmplitudeMap", "amplitude_map", "largest_stable", "unknown"]
 
 COLUMNS = 60
 """Values of the first parameter."""
@@ -93,3 +94,26 @@ def largest_stable(branches: Sequence[Branch], values: Sequence[float] | np.ndar
             (p, low), (q, high) = ends
             found[inside] = np.maximum(found[inside], np.interp(values[inside], [p, q], [low, high]))
     return found
+
+
+def unknown(question: Question, branches: Sequence[Branch], begin: str, left: Sequence[str]) -> list[str]:
+    """Why a search cannot say that there are no larger cycles, in words; empty where nothing speaks against it.
+
+    Parameters
+    ----------
+    question : Question
+    branches : sequence of Branch
+    begin : str
+        ``hopf`` or ``simulation``.
+    left : sequence of str
+        Motions that left the range of the model.
+    """
+    words = [f"{sum(branch.lost for branch in branches)} branches were lost"] * any(branch.lost for branch in branches)
+    words += [f"{len(left)} motions left the range of the model"] * bool(left)
+    if begin == "hopf":
+        if joints := joints_of(question.study):
+            words.append(f"the joints were closed ({', '.join(joints)}): --from simulation has them")
+        columns = np.linspace(question.axis.low, question.axis.high, COLUMNS)
+        if ((largest_stable(branches, columns) == 0) & ~question.rest_is_stable(columns)).any():
+            words.append("rest is unstable where no stable cycle was found")
+    return words

@@ -20,7 +20,7 @@ from .hopf import HopfPoint, first_orbit, hopf_points, is_odd
 from .newton import NoOrbit, corrected, phase
 from .orbit import Branch, Orbit
 
-__all__ = ["Question", "end_in_words", "error_of", "from_hopf_points", "refined", "worded"]
+__all__ = ["Question", "end_in_words", "errors_of", "from_hopf_points", "refined", "worded"]
 
 SMALL = 0.02
 """Yaw angle [rad] below which differences of orbits do not count along a branch from rest."""
@@ -30,6 +30,9 @@ FIRST = 0.02
 
 SAME = 1e-3
 """Of the range: a Hopf point at which another branch has ended."""
+
+LOOKED_AT = 5
+"""Orbits of a branch whose intervals are halved."""
 
 ENDS = {
     "range": "goes on beyond the range",
@@ -182,7 +185,7 @@ def _from(question: Question, flow: Flow, point: HopfPoint, report: Callable[[Or
     orbits = [along.orbit(first), *orbits]
     words = f"Hopf point at {worded(point.parameter, axis.unit)}, {point.frequency / (2 * np.pi):.4g} Hz"
     return Branch(
-        axis.name, axis.unit, tuple(orbits), words, end_in_words(orbits, end, axis.unit), "hopf", error_of(along, orbits)
+        axis.name, axis.unit, tuple(orbits), words, end_in_words(orbits, end, axis.unit), "hopf", *errors_of(along, orbits)
     ), end
 
 
@@ -203,12 +206,25 @@ def refined(path: Path) -> Path:
     return replace(path, legs=tuple(legs))
 
 
-def error_of(along: Along, orbits: list[Orbit]) -> float:
-    """Relative change of amplitude and period of the largest orbit when its intervals are halved; inf if it is lost."""
+def errors_of(along: Along, orbits: list[Orbit]) -> tuple[float, float]:
+    """Largest changes of some orbits, the largest among them, when their intervals are halved; inf if one is lost.
+
+    Returns
+    -------
+    tuple of float
+        Relative, of amplitude and period; of the modulus of the largest multiplier.
+    """
     largest = max(orbits, key=lambda orbit: orbit.amplitudes["yaw_angle"])
-    try:
-        finer = along.orbit(along.held(refined(largest.path), largest.parameter))
-    except NoOrbit:
-        return float("inf")
-    of_amplitude = finer.amplitudes["yaw_angle"] / largest.amplitudes["yaw_angle"] - 1
-    return float(max(abs(of_amplitude), abs(finer.period / largest.period - 1)))
+    of_size, of_multiplier = 0.0, 0.0
+    for orbit in [largest, *orbits[len(orbits) // (2 * LOOKED_AT) :: max(1, len(orbits) // LOOKED_AT)]]:
+        if orbit.label or len(orbit.path.legs) != len(largest.path.legs):
+            continue  # at a fold there is no orbit to either side
+        try:
+            finer = along.orbit(along.held(refined(orbit.path), orbit.parameter))
+        except NoOrbit:
+            return float("inf"), float("inf")
+        changes = finer.amplitudes["yaw_angle"] / orbit.amplitudes["yaw_angle"] - 1, finer.period / orbit.period - 1
+        of_size = max(of_size, *(float(abs(change)) for change in changes))
+        before, after = (float(np.abs(o.multipliers).max()) for o in (orbit, finer))
+        of_multiplier = max(of_multiplier, abs(after - before))
+    return of_size, of_multiplier

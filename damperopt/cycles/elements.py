@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..dynamics import build
 from ..expressions.corners import Corners, Linear, Smooth, Switched
+from ..study.study import Study
+from ..symbols import symbolic
 
-__all__ = ["Closed", "Events", "has_joints"]
+__all__ = ["Closed", "Events", "joints_of"]
 
 
 class Closed(Linear):
@@ -52,8 +55,8 @@ class _Counted(Closed):
         return super().contact(name, x, limit, width)
 
 
-def has_joints(build: Any, symbols: Any) -> tuple[str, ...]:
+def joints_of(study: Study) -> tuple[str, ...]:
     """Names of the gaps, stops and frictions of a study's model."""
     corners: Corners = (counted := _Counted())
-    build(symbols, corners)
+    build(symbolic(study), corners)
     return tuple(dict.fromkeys(counted.names))

@@ -116,6 +116,12 @@ class Jointed:
         """Row of the friction's rate among the values of events; the reserve against + and - follow it."""
         return len(self.names)
 
+    def mirrored_row(self, row: int) -> int:
+        """The row that vanishes at the mirrored event."""
+        if row < self.rate_row:
+            return int(self.partners[row])
+        return {0: row, 1: row + 1, 2: row - 1}[row - self.rate_row]
+
     def signs(self, flow: Flow, x: np.ndarray, parameters: np.ndarray) -> Signs:
         """Values at states x (k, n) in the modes of a flow."""
         rows = np.array([self._evaluated(flow, point, parameters, np.zeros_like(parameters))[0] for point in x])

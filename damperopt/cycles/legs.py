@@ -25,6 +25,9 @@ STILL = 1e-6
 MIRRORED = 0.05
 """Of the largest size of a state: how far a half cycle may be off the mirrored other half to be taken for it."""
 
+SHIFTED = 0.02
+"""Of a cycle: how far from it an event may lie that is taken for its end."""
+
 PASSED = 1e-7
 """Of the largest argument of a corner: how far it may lie on the wrong side."""
 
@@ -74,16 +77,17 @@ def chain_of(model: Jointed, time: np.ndarray, states: np.ndarray, parameters: n
         return None
     begin = int(start[0])
     mirror = model.any.mirror
-    middle, sizes = begin + period // 2, np.abs(states).max(axis=0)
+    met = {int(c): _row(model, modes[c - 1], modes[c]) for c in changes}
+    middle = _nearest(met, model.mirrored_row(met[begin]), begin + period // 2, period)
+    sizes = np.abs(states).max(axis=0)
     half = half and bool((np.abs(states[middle] - mirror * states[begin])[sizes > 0] <= MIRRORED * sizes[sizes > 0]).all())
-    end = middle if half else begin + period
+    end = middle if half else _nearest(met, met[begin], begin + period, period)
     inside = [int(c) for c in changes if begin < c < end - 1]
     bounds = [begin, *inside, end]
     legs, rows = [], []
     for a, b in pairwise(bounds):
         legs.append(_leg(model, time, states, parameters, modes[(a + b - 1) // 2], a, b, period))
-    for c in [*inside, begin]:
-        rows.append(_row(model, modes[c - 1], modes[c]))
+    rows += [met[c] for c in (*inside, begin)]
     legs[0] = _started(legs[0], legs[-1], mirror if half else np.ones_like(mirror))
     return Chain(Path(tuple(legs), parameters, half), tuple(rows))
 
@@ -105,6 +109,12 @@ def meets_others(model: Jointed, path: Path) -> bool:
         if (rate < -PASSED * np.abs(rate).max()).any():
             return True
     return False
+
+
+def _nearest(met: dict[int, int], row: int, target: int, period: int) -> int:
+    """The event of a kind at which a cycle or half of it ends: where it began, once more."""
+    found = min((c for c, other in met.items() if other == row), key=lambda c: abs(c - target), default=target)
+    return found if abs(found - target) <= SHIFTED * period else target
 
 
 def period_of(flow: Flow, states: np.ndarray) -> int | None:

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics import build
 from ..errors import ConfigError
 from ..motion.exact import ExactSimulator
 from ..study.study import Study
-from ..symbols import symbolic
-from .branches import Question, end_in_words, error_of, worded
+from .branches import Question, end_in_words, errors_of, worded
 from .collocation import STAGES, Leg, Path, tableau
 from .continuation import Along, follow, scales_of
 from .edge import Kicker, edge
-from .elements import has_joints
+from .elements import joints_of
 from .flow import Flow
 from .hopf import INTERVALS, is_odd
 from .joints import Jointed
@@ -53,6 +51,9 @@ LITTLE = 0.05
 REBUILT = (1e-4, 1e-3, 5e-3)
 """Steps, in parts of the range, over the place where corners are met in another order."""
 
+FINE, FINE_CYCLES = 6000, 2.6
+"""Points at which a motion is cut at its corners, and the cycles that they cover."""
+
 MOST_REBUILT = 40
 
 
@@ -71,14 +72,24 @@ class Seeder:
     Parameters
     ----------
     question : Question
+
+    Attributes
+    ----------
+    left : list of str
+        Motions that left the range of the model, in words.
     """
 
     def __init__(self, question: Question):
         self.question = question
-        self.jointed = Jointed(question.study) if has_joints(build, symbolic(question.study)) else None
+        self.jointed = Jointed(question.study) if joints_of(question.study) else None
         self.flow = Flow(question.study) if self.jointed is None else self.jointed.any
         self.half = is_odd(self.flow, question.parameters(self.flow, question.axis.low))
+        self.left: list[str] = []
         self._kept: tuple[tuple[str, ...], ExactSimulator] | None = None
+
+    def worded(self, value: float) -> str:
+        """A value of what is varied, with its unit."""
+        return worded(value, self.question.axis.unit)
 
     def kicker(self, value: float) -> tuple[Kicker, float, float]:
         """Exact motions at a value of what is varied, and the speed [m/s] and load [N] there."""
@@ -99,6 +110,8 @@ class Seeder:
             sizes = np.ptp(states, axis=0)
             largest = np.maximum(largest, sizes)
             moves = float((sizes / largest).max())
+            if not whole:
+                self.left.append(f"release of {name.replace('_', ' ')} {size:g} rad at {self.worded(value)}")
             if not whole or moves <= GONE:
                 return None
             if (np.abs(sizes - before) / largest).max() <= SETTLED * moves:
@@ -128,10 +141,21 @@ class Seeder:
         parameters = self.question.parameters(self.flow, value)
         sizes = np.abs(states).max(axis=0)
         if self.jointed is not None:
+            time, states = self._finer(value, time, states)
             chain = chain_of(self.jointed, time, states, parameters, self.half)
             return None if chain is None else self.of_chain(chain, sizes, value)
         path = self._loop(time, states, parameters)
         return None if path is None else self._held(self._along(sizes), path, value)
+
+    def _finer(self, value: float, time: np.ndarray, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A motion carried on over some cycles at points so close that no two corners lie between neighbours."""
+        period = period_of(self.flow, states)
+        if period is None:
+            return time, states
+        kicker, speed, load = self.kicker(value)
+        fine = np.linspace(0, FINE_CYCLES * time[period], FINE)
+        rows = kicker.simulator.stretch(speed, load, kicker.disturbance(RELEASES[0][1]), fine, states[-1])
+        return (fine, rows[:, : self.flow.n]) if len(rows) == FINE else (time, states)
 
     def of_chain(self, chain: Chain, sizes: np.ndarray, value: float) -> Found | None:
         """The orbit near a chain of legs."""
@@ -219,8 +243,8 @@ def _repeated(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def from_motions(
     question: Question, report: Callable[[Orbit], None] = lambda orbit: None, values: Sequence[float] | None = None
-) -> list[Branch]:
-    """Branches through cycles that motions lead to, joints as they are.
+) -> tuple[list[Branch], list[str]]:
+    """Branches through cycles that motions lead to, joints as they are; and motions that left the range of the model.
 
     Parameters
     ----------
@@ -229,13 +253,18 @@ def from_motions(
         Called with each orbit.
     values : sequence of float or None
         Of what is varied, at which motions are looked at; None: `VALUES` over the range.
+
+    Returns
+    -------
+    tuple
+        Branches, and the motions that left, in words.
     """
     seeder, axis = Seeder(question), question.axis
     branches: list[Branch] = []
     for value in np.linspace(axis.low, axis.high, VALUES) if values is None else values:
         for found, words in _seeds(seeder, float(value), branches):
-            branches.append(_through(seeder, found, f"{words} at {worded(float(value), axis.unit)}", report))
-    return branches
+            branches.append(_through(seeder, found, f"{words} at {seeder.worded(float(value))}", report))
+    return branches, seeder.left
 
 
 def _seeds(seeder: Seeder, value: float, branches: Sequence[Branch]) -> Iterator[tuple[Found, str]]:
@@ -272,9 +301,9 @@ def _through(seeder: Seeder, found: Found, words: str, report: Callable[[Orbit],
     sides = [_onward(seeder, found, sign, report) for sign in (-1.0, 1.0)]
     orbits = [*reversed(sides[0][0]), found.orbit, *sides[1][0]]
     ends = [end_in_words(part or [found.orbit], end, axis.unit) for part, end in sides]
-    error = error_of(found.along, [found.orbit])
+    errors = errors_of(found.along, [found.orbit])
     return Branch(
-        axis.name, axis.unit, tuple(orbits), f"{words}; backwards: {ends[0]}", f"onwards: {ends[1]}", "simulation", error
+        axis.name, axis.unit, tuple(orbits), f"{words}; backwards: {ends[0]}", f"onwards: {ends[1]}", "simulation", *errors
     )
 
 

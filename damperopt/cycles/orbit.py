@@ -95,7 +95,9 @@ class Branch:
     kind : str
         ``hopf``: joints closed, from a critical value; ``simulation``: joints as they are, from a motion.
     error : float
-        Relative change of amplitude and period of the largest orbit when its intervals are halved.
+        Relative change of amplitude and period of some orbits when their intervals are halved.
+    multiplier_error : float
+        Change of the largest multiplier then: nearer to 1, stability is not known.
     """
 
     name: str
@@ -105,6 +107,7 @@ class Branch:
     ends: str
     kind: Literal["hopf", "simulation"]
     error: float
+    multiplier_error: float
 
     @property
     def lost(self) -> bool:

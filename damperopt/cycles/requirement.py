@@ -12,7 +12,7 @@ from .branches import Question
 from .motions import from_motions
 from .orbit import Branch
 
-__all__ = ["check_limit_cycles", "cycle_failure", "with_gap"]
+__all__ = ["check_limit_cycles", "cycle_failures", "with_gap"]
 
 
 def with_gap(study: Study) -> Study:
@@ -36,17 +36,18 @@ def check_limit_cycles(study: Study, design: Mapping[str, float]) -> LimitCycleC
     if required is None:
         return None
     played, envelope = with_gap(study), study.envelope
-    worst, at, lost, count = 0.0, (envelope.speed.min, max(envelope.loads)), 0, 0
+    worst, at, lost, count, left = 0.0, (envelope.speed.min, max(envelope.loads)), 0, 0, 0
     for load in envelope.loads:
-        branches = from_motions(Question.of(played, design, "speed", load=load), values=required.speeds)
+        branches, motions = from_motions(Question.of(played, design, "speed", load=load), values=required.speeds)
         count += len(branches)
+        left += len(motions)
         lost += sum(branch.lost for branch in branches)
         for yaw, speed in _sizes(branches, required.speeds):
             if yaw > worst:
                 worst, at = yaw, (speed, load)
     gap = played.damper.play.gap if played.damper.play is not None else 0.0
-    passed = worst <= required.yaw_angle and not lost
-    return LimitCycleCheck(passed, required.yaw_angle, worst, *at, gap, count, lost)
+    passed = worst <= required.yaw_angle and not lost and not left
+    return LimitCycleCheck(passed, required.yaw_angle, worst, *at, gap, count, lost, left)
 
 
 def _sizes(branches: list[Branch], speeds: list[float] | None) -> list[tuple[float, float]]:
@@ -56,15 +57,18 @@ def _sizes(branches: list[Branch], speeds: list[float] | None) -> list[tuple[flo
     return list(zip(largest_stable(branches, speeds).tolist(), speeds, strict=True))
 
 
-def cycle_failure(check: LimitCycleCheck) -> str:
+def cycle_failures(check: LimitCycleCheck | None) -> list[str]:
     """Why a check is not passed, in words; with the play that would do, to which small cycles are in proportion."""
+    if check is None or check.passed:
+        return []
     if check.yaw_angle <= check.limit:
-        return f"limit cycles are undecided: {check.lost} of {check.branches} branches were lost"
+        words = f"limit cycles are undecided: {check.lost} of {check.branches} branches were lost"
+        return [f"{words}, {check.left} motions left the range of the model"]
     words = (
         f"a stable limit cycle of {math.degrees(check.yaw_angle):.4g} deg at {check.speed:.6g} m/s, {check.load / 1e3:.6g} kN; "
         f"allowed {math.degrees(check.limit):.4g} deg"
     )
     if not check.gap:
-        return words
+        return [words]
     least = 1e3 * check.gap * check.limit / check.yaw_angle
-    return f"{words} (with {1e3 * check.gap:.4g} mm of play; about {least:.3g} mm would do)"
+    return [f"{words} (with {1e3 * check.gap:.4g} mm of play; about {least:.3g} mm would do)"]

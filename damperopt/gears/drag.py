@@ -13,6 +13,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from ..errors import ConfigError
 from ..expressions.calculus import Expr, sin
 from ..ports.wheel import Contact, Wheel
 from ..quantities.record import Record, Stiffness, refuse
@@ -49,7 +50,10 @@ class Drag(Record):
 
     def leaves_out(self) -> tuple[str, ...]:
         """Words."""
-        return ("the grip that a steady drag takes from the side force, and what it does to stiffness and speed (gear.drag)",)
+        return (
+            "the grip that a steady drag takes from the side force, and what it does to stiffness and speed (gear.drag)",
+            "rolling with less drag than this one, and free of it (gear.drag)",
+        )
 
 
 Dragged = Annotated[Drag | None, Field(examples=[{"brake_torque": "1 kN m", "lateral_stiffness": "1 MN/m"}])]
@@ -69,6 +73,9 @@ def deflected(drag: Drag | None, contact: Contact, radius: Expr) -> Expr:
     if drag is None:
         return 0
     assert contact.wheel is not None
+    if drag.lateral_stiffness is None and contact.deflection is None:
+        allowed = "a stiffness, which this contact line does not know"
+        raise ConfigError(f"gear.drag.lateral_stiffness: missing key; allowed: {allowed}")
     w = contact.deflection if drag.lateral_stiffness is None else contact.side_force / drag.lateral_stiffness
     return (drag.braking(radius) + drag.rolling(contact.wheel.load)) * w
 

@@ -92,7 +92,8 @@ class Twin(YawBending):
         assert other.wheel is not None
         total = replace(wheel, load=wheel.load + other.wheel.load)
         force, moment = one.side_force + other.side_force, one.aligning_moment + other.aligning_moment
-        deflection = (one.deflection + other.deflection) / 2  # each under half of the drag
+        known = one.deflection is not None and other.deflection is not None
+        deflection = (one.deflection + other.deflection) / 2 if known else None  # each under half of the drag
         both = Contact((), force, moment, deflection=deflection, wheel=total)
         scrub = 2 * axle.deflection_stiffness * axle.half_track * u
         motion = super().rates(x, (both,), damper, yaw_torque - scrub * cos(self.rake_angle), corners)

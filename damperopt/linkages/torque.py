@@ -10,10 +10,10 @@ The nodes between are massless: a chain adds one state, whether its compliance s
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 from ..dampers.base import Context
-from ..expressions.calculus import Expr, partial, symbol, value_at
+from ..expressions.calculus import Expr, implicit_slopes, partial, symbol, value_at
 from ..expressions.corners import Corners
 from ..ports.linkage import Linkage, Path
 from ..ports.motion import Attachment, Torque
@@ -21,6 +21,9 @@ from ..quantities.named import Output, State
 from .joints import beyond_gap, stop_force
 
 __all__ = ["CHAIN_STATES", "OUTPUTS", "ROTARY_OUTPUTS", "damper_torque"]
+
+Changes: TypeAlias = Sequence[tuple[Expr, Expr]]
+"""Symbols, and their rates."""
 
 RATE_STEPS = 24
 """Of Newton's method for the rate of a damper without an inverse: the first-order guess lies far outside where the force grows
@@ -59,7 +62,13 @@ ROTARY_OUTPUTS = (
 
 
 def damper_torque(
-    damper: Any, link: Linkage, design: Mapping[str, Expr], corners: Corners, attachment: Attachment, context: Context
+    damper: Any,
+    link: Linkage,
+    design: Mapping[str, Expr],
+    corners: Corners,
+    attachment: Attachment,
+    context: Context,
+    changes: Changes = (),
 ) -> Torque:
     """Torque of `link`, with the joints and compliances of `damper`, on a gear.
 
@@ -75,12 +84,14 @@ def damper_torque(
     attachment : Attachment
         Angle [rad] and rate [rad/s] that the gear gives.
     context : Context
+    changes : sequence of tuple
+        Symbols in `link` that change in time by themselves, such as the stroke of the shock strut, each with its rate.
 
     Returns
     -------
     Torque
     """
-    return _Chain(damper, link, {**design, **link.as_printed}, corners, attachment, context).torque()
+    return _Chain(damper, link, {**design, **link.as_printed}, corners, attachment, context, changes).torque()
 
 
 class _Chain:
@@ -89,8 +100,16 @@ class _Chain:
     states: ClassVar = {state.name: state for state in CHAIN_STATES}
 
     def __init__(
-        self, damper: Any, link: Linkage, design: Mapping[str, Expr], corners: Corners, attachment: Attachment, context: Context
+        self,
+        damper: Any,
+        link: Linkage,
+        design: Mapping[str, Expr],
+        corners: Corners,
+        attachment: Attachment,
+        context: Context,
+        changes: Changes = (),
     ):
+        self._changes = list(changes)
         self._damper, self._link, self._design = damper, link, design
         self._corners, self._attachment, self._context = corners, attachment, context
         self._own = {state.name: symbol(state.name) for state in damper.STATES}
@@ -107,19 +126,20 @@ class _Chain:
         driving, engaged = self._attachment.angle, 1
         if damper.play is not None:
             driving, engaged = beyond_gap(damper.play, link.reach, self._corners, driving)
+        self._let_loop_follow(link.closure(driving))
         position = link.at(driving)
         s, lever = position.stroke, position.damper_lever
         F_spring, F_stop = link.stiffness * position.deflection, stop_force(damper.stop, self._corners, s)
         chain: dict[str, tuple[Expr, Expr, Expr]] = {}  # state: symbol, rate, value when at rest
         if k_s is None:
-            dashpot, v = s, engaged * lever * self._attachment.rate
+            dashpot, v = s, engaged * lever * self._attachment.rate + self._drift(s)
             F_d = self._force(s, v).force
         elif not damper.FEELS_RATE:  # where it stands follows from what holds it
             dashpot = symbol("dashpot_stroke")
             F_d = k_s * (s - dashpot)
             own = self._force(dashpot, 0)
             self._unknowns.append((dashpot, 0, (F_d - own.force) / k_s))
-            moved = k_s * engaged * lever * self._attachment.rate - self._by_states(own.force, own.rates)
+            moved = k_s * engaged * lever * self._attachment.rate - self._by_states(own.force, own.rates) + self._drift(F_d)
             v = moved / (k_s + partial(own.force, dashpot))
         else:
             name = "dashpot_angle" if damper.ROTARY else "dashpot_stroke"
@@ -149,12 +169,12 @@ class _Chain:
         if k_s is None:
             dashpot = s
             v = self._speed(dashpot, F_d)
-            rate = v / s_u
+            rate = (v - self._drift(s)) / s_u
         else:
             dashpot = s - F_d / k_s
             v = self._speed(dashpot, F_d)
             F_psi = T_psi * path.angle_slope / s_u
-            rate = (k_s * v + F_psi * self._attachment.rate) / (k_s * s_u - partial(F_d, u))
+            rate = (k_s * (v - self._drift(dashpot)) + F_psi * self._attachment.rate) / (k_s * s_u - partial(F_d, u))
         rest = _root(F_d, u)  # held for long, the damper carries nothing
         shown = (s, v, F_d, path.deflection, F_spring, F_stop)
         return self._answer(-T, {link.coordinate: (u, rate, rest)}, dashpot, v, shown)
@@ -169,12 +189,24 @@ class _Chain:
         stiffness = value_at(partial(self._force(along, 0).force, along), along, dashpot)
         # of the balance, kept as time goes on: residual_u u' + residual_psi psi' + residual_states states' = 0
         psi_t = self._attachment.rate
-        moved = (F_psi - stiffness * slope) * psi_t - self._by_states(own.force, own.rates)
+        moved = (F_psi - stiffness * slope) * psi_t - self._by_states(own.force, own.rates) + self._drift(residual)
         u_t = -moved / partial(residual, u)
         self._unknowns.append((u, 0, residual * path.stroke_slope / (self._link.links * self._link.reach)))
-        v = partial(dashpot, u) * u_t + slope * psi_t
+        v = partial(dashpot, u) * u_t + slope * psi_t + self._drift(dashpot)
         shown = (path.stroke, v, F_d, path.deflection, *others)
         return self._answer(torque, {}, dashpot, v, shown)
+
+    def _drift(self, expression: Expr) -> Expr:
+        """Rate of an expression by what changes of itself."""
+        return sum(partial(expression, of) * rate for of, rate in self._changes)
+
+    def _let_loop_follow(self, closure: Sequence[Expr]) -> None:
+        """Unknowns of a closed loop change too, with the angle held."""
+        if self._changes and closure:
+            slopes = [implicit_slopes(closure, self._link.unknowns, of) for of, _ in self._changes]
+            rates = [rate for _, rate in self._changes]
+            for k, unknown in enumerate(self._link.unknowns):
+                self._changes.append((unknown, sum(slope[k] * rate for slope, rate in zip(slopes, rates, strict=True))))
 
     def _by_states(self, force: Expr, rates: Mapping[str, Expr]) -> Expr:
         """Rate of a force by the damper's own states alone."""

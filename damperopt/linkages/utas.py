@@ -11,8 +11,9 @@ gives with S = 0 the deflection of the arm's tip, 1 + 3 a/l times that of a clam
 3 a^2/(2 l (l + 3 a)) of that, which takes stroke from the damper; and at its least over V (the apex held) the stiffness along
 the damper, 1/k = (L/l)^2 a^3/(E I) (2/3 - 3 a/(4 (l + 3 a))).
 
-V also pushes the arm with V b/L and the half beside it with V l/L. The arm is shorter by 3 I b/(l^2 L A (1 + 3 a/l)) of its
-deflection, which takes stroke from the damper as a retreat of its root by (L^2 - b^2)/(L l) of that would.
+V also pushes the arm with V b/L and pulls the half beside it with V l/L: over the deflection V/k the arm is shorter by
+m = k l b/(L E A), and its root moves aside by n = k l a/(L E A). For small motions that is a spring softer by 1 + (m b + n l)/L
+and a retreat of the root by another (m l + n b)/L.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from typing import Any, ClassVar, Literal
 
 from ..expressions.calculus import Expr, sin, sqrt
 from ..ports.linkage import Compliant, Linkage, Member
-from ..strength.sections import area
+from ..strength.sections import area, shape_numbers
 from .base import TorqueLinks, from_lengths, reach_and_height, viscous
 from .spatial import closed_loop
 
@@ -62,20 +63,23 @@ class Utas(TorqueLinks):
         E = study.material.youngs_modulus
         if self.geometry != "spatial" or not self.is_sized("arm"):
             return self.linkage(design, E, stroke)
-        return self.spatial(design, E, stroke, area(study.mass.arm_section, design["I_arm"]))
+        kappa_area, _ = shape_numbers(study.mass.arm_section)
+        return self.spatial(design, E, stroke, sqrt(design["I_arm"]) / kappa_area)
 
-    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, section: Expr = None) -> Linkage:
-        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without a section [m^2] keeps its length."""
+    def spatial(self, design: Mapping[str, Expr], E: Expr, stroke: Expr, gyration: Expr = None) -> Linkage:
+        """Arm from (0, b, h), damper from (0, -b, h), both to the apex; an arm without its I/A [m^2] keeps its length."""
         L, b, (ell, h) = design["L"], design["b"], reach_and_height(design, stroke)
         l_arm = sqrt(L**2 + b**2)
         a = self.links.overhang(b)
         retreat = 3 * a**2 / (2 * l_arm * (l_arm + 3 * a)) if self.is_sized("arm") else 0
-        if section is not None:
-            shorter = 3 * design["I_arm"] * b / (l_arm**2 * L * section * self._softer(b, l_arm))
-            retreat = retreat + shorter * (L**2 - b**2) / (L * l_arm)
+        stiffness = 3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm)
+        if gyration is not None:
+            shorter, aside = (3 * gyration * over / (L * l_arm**2 * self._softer(b, l_arm)) for over in (b, a))
+            retreat = retreat + (shorter * l_arm + aside * b) / L
+            stiffness = stiffness / (1 + (shorter * b + aside * l_arm) / L)
         return closed_loop(
             design,
-            3 * E * design["I_arm"] / l_arm**3 / self._softer(b, l_arm),
+            stiffness,
             stroke=stroke,
             y_root=b,
             root_retreat=retreat,

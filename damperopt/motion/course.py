@@ -162,12 +162,18 @@ def dae_along(study: Study, corners: Corners, own_stroke: bool) -> tuple[DAE, ca
     clock, numbers = ca.SX.sym("clock"), ca.SX.sym("segment", 10)
     V, F, x_s, T = (numbers[k] + numbers[4 + k] * clock for k in range(4))
     load_rate, stroke, stroke_rate = (ca.SX.sym(name) for name in ("load_rate", "stroke", "stroke_rate"))
-    dae = build(symbolic(study), corners, Ride(load_rate, stroke, stroke_rate) if own_stroke else Ride(load_rate))
+    symbols = symbolic(study)
+    dae = build(symbols, corners, Ride(load_rate, stroke, stroke_rate))
+    x_t = numbers[6]
+    if not own_stroke:  # in balance
+        load = ca.SX.sym("load")
+        balance = ca.SX(symbols.study.gear.stroke(load))
+        x_s, x_t = (ca.substitute(e, load, F) for e in (balance, ca.densify(ca.jacobian(balance, load)) * numbers[5]))
     radius = study.gear.wheel_radius
     angle = numbers[8] + (numbers[0] * clock + numbers[4] * clock**2 / 2) / radius
     torque = T + numbers[9] * (V / radius) ** 2 * ca.sin(angle)
     of = ca.vertcat(dae.speed, dae.load, dae.yaw_torque, load_rate, stroke, stroke_rate)
-    by = ca.vertcat(V, F, torque, numbers[5], x_s, numbers[6])
+    by = ca.vertcat(V, F, torque, numbers[5], x_s, x_t)
 
     def put(*expressions: Any) -> list[ca.SX]:
         return list(ca.substitute([ca.SX(e) for e in expressions], [of], [by]))

@@ -3,7 +3,7 @@
 Within a row of the history and the next one everything goes in straight lines, and the model is integrated from row to row, so
 that no kink lies within a step. The contact line of the tyre lives in the path s, ds = V dt: its field is carried at the
 speed of the moment, and stretched where the load changes the length of the footprint. The stroke of a shock strut is that of
-the history, or in balance with the load. Links follow it at rest: what the stroke's own rate makes of their angles is left out.
+the history, or in balance with the load; its rate moves the wheel of a bent strut, and the damper of links at an angle.
 """
 
 from __future__ import annotations

@@ -59,6 +59,7 @@ def branch_record(branch: Branch) -> dict[str, Any]:
         "begins": branch.begins,
         "ends": branch.ends,
         "relative_error": branch.error if np.isfinite(branch.error) else None,
+        "multiplier_error": branch.multiplier_error if np.isfinite(branch.multiplier_error) else None,
         "orbits": [_orbit_record(orbit, shown) for orbit in branch.orbits],
     }
 

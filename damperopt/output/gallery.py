@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..answers.sums import BOUND_FILE
 from ..charts.chart import StabilityChart, chart
 from ..charts.maps import FilledMap
 from ..linkages.assembly import layouts
@@ -298,6 +300,8 @@ def write_design(place: Path, study: Study, result: DesignResult, figures: bool)
     figures : bool
     """
     (place / "result.json").write_text(result.to_json(), encoding="utf-8")
+    if result.bound is not None and result.bound.certificate is not None:
+        (place / BOUND_FILE).write_text(json.dumps(result.bound.certificate, allow_nan=False) + "\n", encoding="utf-8")
     if result.stability is None:
         return
     answer = Answer.of(study, result)

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..answers.bound import bound_words
 from ..quantities.record import LoadRange
 from ..quantities.shown import as_written, shown
 from ..quantities.shown import scale as scale_of
@@ -21,6 +22,7 @@ __all__ = [
     "asked",
     "assumptions",
     "beyond",
+    "bound",
     "certificate",
     "constraint_rows",
     "damping_rows",
@@ -259,6 +261,11 @@ def _proof_in_words(proof: Certificate) -> str:
         "ball arithmetic, rounding enclosed" if proof.method.startswith("balls") else "rational arithmetic, without rounding"
     )
     return f"Proved in {arithmetic}: {where}. How: {method}. {reason}"
+
+
+def bound(result: DesignResult) -> str:
+    """The lower bound on the mass, in words."""
+    return "No lower bound on the mass." if result.bound is None else bound_words(result.bound)
 
 
 def verification(result: DesignResult) -> list[str]:

@@ -69,8 +69,8 @@ class Contact:
         Backwards [N].
     outputs : mapping of str to Expr
         Other quantities by declared name [SI].
-    deflection : Expr
-        Of the tyre on the ground against its wheel, in the direction of the side force, were it standing [m].
+    deflection : Expr or None
+        Of the tyre on the ground against its wheel, in the direction of the side force, were it standing [m]; None: unknown.
     wheel : Wheel or None
         The wheel that it belongs to: gears read load and speed from it.
     """

@@ -56,7 +56,8 @@ class _Pushed:
         M_kappa = self.tyre.tread_width_moment * wheel.swivel_rate / wheel.speed
         own = self.tyre.of_wheel(wheel)
         linear = Linear(*own.linear(wheel.load, own.pressure))
-        return Contact((), F, M + M_kappa, deflection=F / self.tyre.contact.side_stiffness(linear), wheel=wheel)
+        K_y = self.tyre.contact.side_stiffness(linear)
+        return Contact((), F, M + M_kappa, deflection=None if K_y is None else F / K_y, wheel=wheel)
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,19 @@ def shortest_wavelength(
 
 
 def contact_length(study: Study, load: float) -> float:
-    """2 a at a load of the gear [N]; of several wheels the longest [m]."""
+    """Length 2 a of the contact line; of several wheels the longest.
+
+    Parameters
+    ----------
+    study : Study
+    load : float
+        Of the gear [N].
+
+    Returns
+    -------
+    float
+        [m]
+    """
     data = (tuple(tyre.linear(own, tyre.pressure)) for own, tyre in study.on_wheels(load))
     return 2 * max(float(a) for *_, a in data)
 

@@ -33,3 +33,7 @@ class Solver(Record):
     """Speeds of the search for the worst decay; twice as many verify the result."""
     verification_speeds: Annotated[int, Field(strict=True, ge=2, le=1_000_000)] = 2000
     """Speeds of the grid on which eigenvalues are checked at the end."""
+    bound_gap: Annotated[float, Quantity("1", above=0, at_most=1)] = 1e-3
+    """Gap between the mass of a design and its lower bound at which the search for the bound ends."""
+    bound_seconds: Annotated[float, Quantity("s", at_least=0, at_most=86400)] = 2.0
+    """Processor time of that search; 0: no bound is looked for [s]."""

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import model_validator
+from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from ..expressions.calculus import Expr, is_symbol, slope
 from ..expressions.corners import Corners
@@ -160,6 +161,17 @@ class ContactLine(Record):
 
     contact: str
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """In a file the tag of a block may stand under ``kind``."""
+        found = handler(schema)
+        block = handler.resolve_ref_schema(found)
+        if "contact" in block.get("properties", {}):
+            block["properties"]["kind"] = dict(block["properties"]["contact"])
+            block["required"] = [key for key in block.get("required", ()) if key != "contact"]
+            block["oneOf"] = [{"required": ["contact"]}, {"required": ["kind"]}]
+        return found
+
     def states(self) -> tuple[State, ...]:
         """States of the line, of one wheel; a line whose numbers say how many it has says it here."""
         return self.STATES
@@ -194,7 +206,9 @@ class ContactLine(Record):
         return self
 
     def side_stiffness(self, linear: Linear) -> Expr:
-        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma)."""
+        """K_y of the tyre standing, side force over side deflection [N/m]: of a string, C_Fa/(a + sigma); None: unknown."""
+        if linear.relaxation_length is None:
+            return None
         return linear.cornering_stiffness / (linear.half_contact_length + linear.relaxation_length)
 
     def least_wave(self) -> float:
@@ -336,5 +350,6 @@ class Tyre(Record):
         M_z = law.moment(alpha_M, wheel.load, p, corners)
         M_kappa = self.tread_width_moment * wheel.swivel_rate / wheel.speed
         outputs = {"slip_angle": alpha_F, "side_force": F_y, "aligning_moment": M_z}
-        deflection = F_y / self.contact.side_stiffness(linear)
+        K_y = self.contact.side_stiffness(linear)
+        deflection = None if K_y is None else F_y / K_y
         return Contact(rates, F_y, M_z + M_kappa, outputs=outputs, deflection=deflection, wheel=wheel)

@@ -21,7 +21,7 @@ LONGEST, SHORTEST, POINTS = 100.0, 1.25, 240
 """Contact lengths per wave."""
 
 SPEED = 40.0
-"""At which a line with a clock of its own is shown [m/s]."""
+"""At which a line is shown that has a time of its own, such as that of its damping [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _bare(line: type[ContactLine]) -> bool:
 def _label(line: ContactLine) -> str:
     """Name of a line, with the numbers that its response hangs on; the order of a field is none of them."""
     numbers = {key: getattr(line, key) for key in type(line).model_fields if line.RATIONAL and key != "contact"}
-    return ", ".join((line.contact, *(f"{key} {value}" for key, value in numbers.items() if value != "memory")))
+    return ", ".join((line.contact, *(f"{key} {value}" for key, value in numbers.items() if value not in ("memory", None))))
 
 
 def _along(line: ContactLine, frequencies: np.ndarray, linear: Linear) -> np.ndarray:

@@ -68,7 +68,7 @@ class Moved:
     """The linkage of a study at an angle, its loop closed by SciPy."""
 
     def __init__(self, study, psi):
-        self.link = link = study.damper.linkage(study.start, study.material.youngs_modulus)
+        self.link = link = study.damper.linkage_of(study, study.start)
         z, angle = ca.vertcat(ca.SX(0, 1), *link.unknowns), ca.SX.sym("psi")
         place = link.at(angle)
         rows = ca.vertcat(*(ca.SX(v) for v in (place.deflection, place.spring_lever, place.stroke, place.damper_lever)))
@@ -156,7 +156,7 @@ def distance(a, b):
 
 
 def test_members_meet_at_the_apex(study):
-    damper, link = study.damper, study.damper.linkage(study.start, study.material.youngs_modulus)
+    damper, link = study.damper, study.damper.linkage_of(study, study.start)
     members = damper.members(study.start)
     if damper.ROTARY:
         assert not members, "nothing to draw about the yaw axis"
@@ -191,7 +191,7 @@ def seen_from_the_top(member):
 
 def test_planar_levers_are_those_of_the_members_from_the_top(study):
     """The apex moves sideways by reach psi: along the damper that is its stroke, across the arm its deflection."""
-    damper, link = study.damper, study.damper.linkage(study.start, study.material.youngs_modulus)
+    damper, link = study.damper, study.damper.linkage_of(study, study.start)
     if damper.ROTARY or damper.geometry == "spatial":
         return
     members = damper.members(study.start)
@@ -245,10 +245,15 @@ def test_moved_members_have_the_lengths_of_the_loop(study, psi):
     hinge = np.mean([[float(value) for value in member.start] for member in uppers], axis=0)  # between legs
     length, eps = distance(hinge, uppers[0].end), moved.deflection
     along = length - FORESHORTENING * eps**2 / length if uppers[0].kind == "arm" else length
-    if any(member.kind == "hinge" for member in members):  # whose end the arm's root moves back with: by M b^2/(2 E I)
-        side = abs(hinge[1])
+    beam = one(members, "beam")
+    if beam is not None:  # whose end the arm's root moves back with, by M a^2/(2 E I); it and the arm give way along themselves
+        side, I, strut = abs(hinge[1]), float(beam.inertia), study.damper.links.strut_width
+        over = side if strut is None else (side - strut / 2 + math.hypot(side - strut / 2, 0.006)) / 2
+        L, bent = math.sqrt(length**2 - side**2), 1 + 3 * over / length
+        pushed = 3 * I / (math.sqrt(16 * I * math.pi * 0.09 / 1.64) * L * length**2 * bent)  # a tube, its wall a tenth
+        back = 3 * over**2 / (2 * length**2 * bent) + pushed * (side * length + over * side) / L
         ahead = np.array([apex[0], 0.0, apex[2] - hinge[2]])
-        hinge = hinge - 3 * side**2 / (2 * length * (length + 3 * side)) * eps * ahead / np.linalg.norm(ahead)
+        hinge = hinge - back * eps * ahead / np.linalg.norm(ahead)
     assert distance(hinge, apex) == pytest.approx(math.hypot(along, eps), abs=CLOSES)
     strut = one(members, "damper")
     if distance(strut.end, link_apex(moved.link)) < CLOSES:

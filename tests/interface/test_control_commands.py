@@ -15,13 +15,14 @@ GEAR = """
 name: gear with an actuator
 gear: {kind: yaw_bending, yaw_inertia: 100 kg m^2, caster_length: 0.12 m, wheel_radius: 0.362 m,
        lateral: {inertia: 600 kg m^2, stiffness: 6.1 MN m/rad, damping: 300 N m s/rad, height: 2.5 m}}
-tyre: {law: stiffness, carcass_stiffness: 1.4e6 N/m^2, half_contact_length: 0.1 m, relaxation_length: 0.3 m}
+tyre: {law: stiffness, contact: leading_point, carcass_stiffness: 1.4e6 N/m^2, half_contact_length: 0.1 m,
+       relaxation_length: 0.3 m}
 damper: {topology: boeing, geometry: planar, compliance: rigid, charge_pressure: 1 MPa}
 envelope: {speed: {min: 10 m/s, max: 60 m/s}, vertical_load: 150 kN}
 requirements: {stability_margin: 2 1/s, limit_torque: 30 kN m,
                lug_distance: {min: 0.4 m, max: 1.1 m}, reach: {min: 0.1 m, max: 0.4 m}}
 design: {c_lambda: 12 kN s/m, k_lambda: 5 MN/m, L: 0.6 m, gamma: 0.5 rad}
-solver: {verification_speeds: 50}
+solver: {starts: 1, verification_speeds: 50, bound_seconds: 0}
 """
 
 

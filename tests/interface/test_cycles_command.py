@@ -90,3 +90,20 @@ def test_analyse_says_how_limit_cycles_begin(call, configs, tmp_path):
     assert not branch["orbits"][0]["stable"]
     assert branch["orbits"][-1]["stable"]
     assert "hidden shimmy" in said.out
+
+
+def test_a_limit_is_undecided_where_nothing_is_known(call, configs, tmp_path):
+    """Rest is unstable and no branch begins in the range; and a castering wheel whose joints are closed."""
+    nose = configs / "nose_gear_thota.yaml"
+    said = call("cycles", nose, "--over", "speed=30:60", "--load", "150 kN", "--at-most", "1deg", "-o", "a")
+    assert said.code == 3
+    assert "undecided" in said.out
+    assert "Rest is unstable" in said.out
+    (tmp_path / "castor.yaml").write_text(CASTOR)
+    said = call("cycles", "castor.yaml", "--at-most", "1deg", "-o", "b")
+    assert said.code == 3
+    assert "the joints were closed" in said.out
+    said = call("cycles", nose, "--over", "speed=30:120", "--load", "150 kN", "--at-most", "9deg", "-o", "c")
+    assert (said.code, "kept" in said.out) == (0, True)
+    said = call("cycles", nose, "--over", "speed=30:120", "--load", "150 kN", "--at-most", "8deg", "-o", "d")
+    assert (said.code, "not kept" in said.out) == (3, True)

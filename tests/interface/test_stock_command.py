@@ -22,6 +22,7 @@ def study(configs, tmp_path):
     """The shipped study with fewer sizes, beside its catalogue."""
     text = (configs / "catalogue_main_gear.yaml").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith(("  tube_diameters", "  walls", "  bores"))]
+    lines.insert(lines.index("  law: brush"), "  contact: leading_point")
     at = lines.index("available:")
     lines[at + 1 : at + 1] = ["  tube_diameters: [36 mm, 45 mm]", "  walls: [1.6 mm, 2.5 mm]"]
     folder = tmp_path / "beside"
@@ -35,13 +36,13 @@ def study(configs, tmp_path):
 def test_run_folder_goes_through_the_other_commands(study, tmp_path, call):
     done = call("optimise", study, "--output", "run", "--no-figures")
     assert done.code == 0, done.err
-    assert "torque links 45 x 1.6 mm, damper invented 20-9" in done.out
+    assert "torque links 36 x 2.5 mm, damper invented 20-9" in done.out
     assert "beside the optimum of any size" in done.out
     run = tmp_path / "run"
     assert (run / "catalogue_dampers.csv").read_text() == FEW["catalogue_dampers.csv"]
     result = damperopt.load_result(run)
     assert result.certificate.proved
-    assert result.stock.chosen == {"torque links": "45 x 1.6 mm", "damper": "invented 20-9"}
+    assert result.stock.chosen == {"torque links": "36 x 2.5 mm", "damper": "invented 20-9"}
     assert "c_lambda" not in result.design
     again = call("analyse", run / "config.yaml", "--design", run / "result.json", "--output", "analysis")
     assert again.code == 0, again.err + again.out

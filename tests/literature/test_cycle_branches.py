@@ -16,6 +16,7 @@ import damperopt
 from damperopt.cycles.branches import Question, from_hopf_points
 from damperopt.cycles.criticality import NormalForm
 from damperopt.cycles.edge import Kicker, edge
+from damperopt.cycles.joints import Jointed
 from damperopt.cycles.motions import Seeder
 from damperopt.motion.exact import ExactSimulator
 
@@ -150,7 +151,7 @@ def dead_band(x, speed):
     return right_hand_side(x, speed, LOAD, parameters(torque=lambda psi, rate: torque))
 
 
-def by_legs(rate, edges, x, period, scales):
+def by_legs(rate, edges, x, period):
     """A motion over a period from corner to corner, each met as an event."""
     t = 0.0
     events = [(lambda t, x, g=g: g(x)) for g in edges]
@@ -193,9 +194,35 @@ def test_cycle_of_a_gap_returns_and_its_multiplier_is_that_of_a_map_through_the_
     states = gap_cycle.time_and_states()[1]
     x, size = states[20], np.abs(states).max(axis=0)  # away from a corner
     edges = [lambda x: x[0] - GAP / ELL, lambda x: x[0] + GAP / ELL]
-    turn = lambda x: by_legs(lambda x: dead_band(x, SPEED), edges, x, gap_cycle.period, size)  # noqa: E731
+    turn = lambda x: by_legs(lambda x: dead_band(x, SPEED), edges, x, gap_cycle.period)  # noqa: E731
     assert np.abs((turn(x) - x) / size).max() < RETURNED
     assert np.abs(gap_cycle.multipliers).max() == pytest.approx(multiplier(turn, x, size), abs=DIFFERENCED)
+
+
+@pytest.mark.verify
+def test_cycle_between_the_stops_of_a_gear_with_a_gap_returns(request):
+    """Half a cycle has four legs, those through the gap a hundredth of it long."""
+    stop, stiffness, damping = 2e-3, 5e7, 3e3
+    study = damperopt.load(request.config.rootpath / "configs" / "thesis_gear.yaml")
+    damper = damper_block("boeing", freeplay={"gap": GAP}, end_stop={"stroke": stop, "stiffness": stiffness})
+    study = study.replace(requirements__decay=None, gear__order=3, damper=damper)
+    design = {"L": LAYOUT["L"], "gamma": LAYOUT["gamma"], "k_lambda": 3.8e6, "c_lambda": damping}
+    orbit = Seeder(Question.of(study, design, "speed", 30.0, 50.0)).settled(SPEED, 0.05).orbit
+    assert len(orbit.path.legs) == 4
+
+    def stroke(x):
+        return ELL * np.sin(x[0] - np.clip(x[0], -GAP / ELL, GAP / ELL))
+
+    def rate(x):
+        twist = x[0] - np.clip(x[0], -GAP / ELL, GAP / ELL)
+        s, lever = ELL * np.sin(twist), ELL * np.cos(twist)
+        force = 3.8e6 * s + damping * lever * x[1] * (twist != 0) + stiffness * (s - np.clip(s, -stop, stop))
+        return right_hand_side(x, SPEED, LOAD, parameters(torque=lambda psi, rate: -lever * force))
+
+    states = orbit.time_and_states()[1]
+    x, size = states[20], np.abs(states).max(axis=0)
+    edges = [lambda x: x[0] - GAP / ELL, lambda x: x[0] + GAP / ELL, lambda x: stroke(x) - stop, lambda x: stroke(x) + stop]
+    assert np.abs((by_legs(rate, edges, x, orbit.period) - x) / size).max() < 10 * RETURNED
 
 
 # ------------------------------------------------------------------------------------ castering wheel held by friction
@@ -237,6 +264,20 @@ def test_between_them_is_an_unstable_cycle_that_returns(castor):
         friction = -BREAKOUT * np.sign(x[1])
         return right_hand_side(x, 15.0, 1200.0, p.__class__(**(vars(p) | {"torque": lambda psi, rate: friction})))
 
-    turn = lambda x: by_legs(rate, [lambda x: x[1]], x, orbit.period, size)  # noqa: E731
+    turn = lambda x: by_legs(rate, [lambda x: x[1]], x, orbit.period)  # noqa: E731
     assert np.abs((turn(x) - x) / size).max() < 10 * RETURNED
     assert np.abs(orbit.multipliers).max() == pytest.approx(multiplier(turn, x, size), rel=1e-3)
+
+
+def test_friction_that_holds_keeps_the_wheel_still_and_its_reserve_is_what_the_tyre_leaves(castor):
+    """Reserve to both sides: T_c -+ the torque of the tyre, e C_F F_z atan(y/sigma), that drives the wheel."""
+    model = Jointed(castor)
+    flow = model.flow(np.zeros(1), sticks=True)
+    x = np.array([[0.05, 0.0, 0.002]])
+    numbers = flow.values({}, 15.0, 1200.0)
+    rates = flow.slopes(x, flow.unknowns(x, numbers), numbers, 0 * numbers).rates[0]
+    y_t = 15.0 * (np.sin(0.05) - 0.002 / 0.12 * np.cos(0.05))
+    assert rates == pytest.approx([0.0, 0.0, y_t], abs=1e-12)
+    torque = -0.09 * 6.0 * 1200.0 * np.arctan(0.002 / 0.12) / 0.6  # over the inertia: of the rate, as friction holds it
+    reserve = model.signs(flow, x, numbers).reserve[0]
+    assert reserve == pytest.approx([BREAKOUT / 0.6 - torque, BREAKOUT / 0.6 + torque], rel=1e-9)

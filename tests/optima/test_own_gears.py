@@ -15,8 +15,8 @@ from damperopt.study.study import Study
 
 pytestmark = pytest.mark.verify
 
-FRAME = 0.01
-"""Relative, of damping ratios through a frame: the arm's shortening is in no formula of the package (measured: 0.007)."""
+FRAME = 0.003
+"""Relative, of damping ratios through a frame (measured at an optimum of UTAS: 0.001)."""
 
 SAME_MASS = 1e-4
 """Relative; nothing may be lighter by more."""

@@ -17,14 +17,14 @@ FROZEN = {
         | {"damper_stroke", "tyre_clearance", "damper_length"},
     ),
     "utas": (
-        16.5437905,
-        {"c_lambda": 131880.7, "I_arm": 1.0747187e-6, "L": 0.5676918, "gamma": 0.7586783, "b": 0.1169808}
+        16.5507774,
+        {"c_lambda": 132052.2, "I_arm": 1.0741623e-6, "L": 0.5678836, "gamma": 0.7590345, "b": 0.1171125}
         | {
-            "A_piston": 1.4866662e-3,
+            "A_piston": 1.4880434e-3,
             "rod_diameter": 0.012,
             "s_damper": 0.00508,
-            "A_link": 2.2959457e-4,
-            "I_hinge": 1.7430157e-7,
+            "A_link": 2.2959022e-4,
+            "I_hinge": 1.7428467e-7,
         },
         {"damping_ratio", "beam_ultimate", "hinge_ultimate", "link_buckling", "rod_minimum", "piston_pressure", "damper_stroke"}
         | {"working_stroke", "tyre_clearance"},

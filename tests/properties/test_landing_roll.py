@@ -86,8 +86,8 @@ class Ground:
         p_a, (p_0, A, V_0, n) = 101_325.0, GAS.values()
         return brentq(lambda x: A * ((p_0 + p_a) * (1 - x * A / V_0) ** -n - p_a) - F, 0, 0.45)
 
-    def rates(self, t, k, state, force):
-        """Of psi, psi', delta, H = I_x delta'; `force` gives F_y, M_z, and the rate of q at the front."""
+    def rates(self, t, k, state, force, torque=None):
+        """Of psi, psi', delta, H = I_x delta'; `force` gives F_y, M_z, and the rate of q at the front; `torque` of a damper."""
         psi, psi_t, delta, H = state[:4]
         G, (V, F, a, a_t, s, T) = GEAR, self.at(t, k)
         x_s = self.stroke(t, F)
@@ -95,7 +95,8 @@ class Ground:
         I_x = G["I_x"] - MASS * (G["l"] ** 2 - l**2)
         eta = -(G["e"] * psi + l * delta)
         F_y, M_z, q_t = force(V, F, a, a_t, s, eta, psi)
-        yaw = T - G["k_psi"] * psi - G["c_psi"] * psi_t - G["kappa"] * psi_t / V - G["e"] * F_y - M_z
+        torque = -G["k_psi"] * psi - G["c_psi"] * psi_t if torque is None else torque
+        yaw = T + torque - G["kappa"] * psi_t / V - G["e"] * F_y - M_z
         bending = -k_delta * delta - G["c"] * H / I_x - l * F_y + F * G["e"] * psi
         return np.array([psi_t, yaw / G["I_z"], H / I_x, bending, q_t])
 
@@ -104,11 +105,16 @@ class Ground:
         return -GEAR["e"] * RELEASE, l
 
 
-def leading_point(ground):
-    """By SciPy, from row to row; the state q of the front."""
+def leading_point(ground, links=None):
+    """By SciPy, from row to row; the state q of the front, and d of the dashpot of links.
+
+    Links at the apex, by forces: K (ell psi - eps) = k eps + k_s (eps - d), d' = k_s (eps - d)/c; rigid ones have d = ell psi.
+    """
     times, found = [], []
     eta, _ = ground.start()
     x = np.array([RELEASE, 0, 0, 0, eta + ground.at(0, 0)[2] * RELEASE])
+    if links is not None:
+        x = np.append(x, links.held(ground, RELEASE))
     for k in range(len(ground.t) - 1):
 
         def rates(t, x, k=k):
@@ -116,12 +122,43 @@ def leading_point(ground):
                 y = x[4] - eta - a * psi
                 return SLOPE * F * y / SIGMA, TRAIL * F * y / SIGMA, (V + a_t) * (psi - y / SIGMA)
 
-            return ground.rates(t, k, x, force)
+            torque, more = (None, ()) if links is None else links.torque(ground, t, k, x)
+            return np.append(ground.rates(t, k, x, force, torque), more)
 
         leg = solve_ivp(rates, ground.t[k : k + 2], x, method="LSODA", rtol=1e-10, atol=1e-15, dense_output=True)
         grid = np.linspace(*ground.t[k : k + 2], 50)
         times, found, x = [*times, *grid], [*found, *leg.sol(grid).T], leg.y[:, -1]
     return np.array(times), np.array(found)[:, :3:2].T
+
+
+class Links:
+    """Two torque links with spring and damper at their apex, whose reach ell follows the stroke."""
+
+    L, GAMMA, SPRING, DAMPING = 0.6, 0.5, 2.5e6, 6e3
+
+    def __init__(self, front=None, series=None):
+        self.K, self.k_s = front, series
+
+    def reach(self, ground, t, k):
+        x_s = ground.stroke(t, ground.at(t, k)[1])
+        return np.sqrt(self.L**2 - (self.L * np.cos(self.GAMMA) - x_s / 2) ** 2)
+
+    def held(self, ground, psi):
+        """d where the chain stands at rest: nothing but the spring carries."""
+        return () if self.K is None else (self.K * self.reach(ground, 0, 0) * psi / (self.K + self.SPRING),)
+
+    def torque(self, ground, t, k, x):
+        ell, h = self.reach(ground, t, k), 1e-6
+        if self.K is None:  # the rate of the reach by a difference within the row
+            a, b = max(t - h, ground.t[k]), min(t + h, ground.t[k + 1])
+            ell_t = (self.reach(ground, b, k) - self.reach(ground, a, k)) / (b - a)
+            return -ell * (self.SPRING * ell * x[0] + self.DAMPING * (ell * x[1] + ell_t * x[0])), ()
+        eps = (self.K * ell * x[0] + self.k_s * x[5]) / (self.K + self.SPRING + self.k_s)
+        return -ell * self.K * (ell * x[0] - eps), (self.k_s * (eps - x[5]) / self.DAMPING,)
+
+    def block(self, geometry):
+        compliance = "rigid" if self.K is None else {"link": self.K, "damper": self.k_s}
+        return {"topology": "boeing", "geometry": geometry, "compliance": compliance}
 
 
 def memory(ground, h=1e-4):
@@ -188,6 +225,24 @@ def test_against_other_equations(rolls, contact, stroke, engine):
     # Heun's steps and straight lines between points of the path leave 6e-5, a quarter of it with half the step; SciPy 1e-8
     assert error(motion, *rolls[contact, stroke]) < (2e-4 if contact == "memory" else 1e-6)
     assert motion["strut_stroke"][0] == pytest.approx(STROKES[0] if stroke else Ground().stroke(0, ROWS[0][2]))
+
+
+LENGTHS_OF_ALL = {"lug_distance": {"min": 0.1, "max": 2}, "reach": {"min": 0.1, "max": 0.6}}
+
+
+@pytest.mark.parametrize(
+    ("geometry", "links"),
+    [("planar", Links()), ("spatial", Links()), ("planar", Links(8e6, 2e7)), ("spatial", Links(8e6, 2e7))],
+)
+def test_links_follow_the_stroke_with_its_rate(geometry, links):
+    """Levers that grow with the stroke: at a yaw angle that stands still, the strut alone moves the damper."""
+    data = study_of("leading_point").model_dump(exclude_none=True) | {"damper": links.block(geometry)}
+    data["requirements"] = {"stability_margin": 0.0, "limit_torque": 1e4, **LENGTHS_OF_ALL}
+    data["design"] = {"c_lambda": links.DAMPING, "k_lambda": links.SPRING, "L": links.L, "gamma": links.GAMMA}
+    study = damperopt.Study.model_validate(data)
+    ground = Ground(STROKES)
+    motion = simulate_along(study, history=history(STROKES), disturbance={"release": {"yaw_angle": RELEASE}}, engine="exact")
+    assert error(motion, *leading_point(ground, links)) < 1e-6
 
 
 def test_what_the_rates_of_load_and_stroke_add_is_seen():

@@ -14,7 +14,7 @@ from damperopt.stability.linear import LinearModel
 E = 207e9
 
 AXIAL = 2e-3
-"""Relative; the shortening of beams and arm moves the apex sideways a little, which no formula has (measured: 0.0014)."""
+"""Relative; formulas of small motion with smooth corners at the strut (measured: 0.0007 without, 0.0012 with a strut)."""
 
 LAYOUT = {"c_lambda": 3e4, "L": 0.55, "gamma": 0.72, "A_piston": 6e-4, "rod_diameter": 0.014, "s_damper": 0.009}
 SIZES = {"a_frame": {"A_link": 2e-4, "I_hinge": 6e-7}, "cantilever": {"I_link": 8e-7}}

@@ -10,7 +10,7 @@ import damperopt
 from damperopt.cycles.amplitude_map import amplitude_map, largest_stable
 from damperopt.cycles.branches import Question, from_hopf_points
 from damperopt.cycles.motions import Seeder
-from damperopt.cycles.requirement import check_limit_cycles, cycle_failure
+from damperopt.cycles.requirement import check_limit_cycles, cycle_failures
 from damperopt.errors import ConfigError
 
 DESIGN = {"L": LAYOUT["L"], "gamma": LAYOUT["gamma"], "k_lambda": 3.8e6, "c_lambda": 15e3}
@@ -34,7 +34,8 @@ def test_a_cycle_beyond_the_limit_is_refused_and_the_play_that_would_do_is_enoug
     assert found.lost == 0
     reach = LAYOUT["L"] * np.sin(LAYOUT["gamma"])
     assert 1 < found.yaw_angle / (2e-4 / reach) < 10
-    assert "of play; about" in cycle_failure(found)
+    (words,) = cycle_failures(found)
+    assert "of play; about" in words
     tight = gear.replace(damper__freeplay={"gap": 2e-4 * found.limit / found.yaw_angle})
     again = Seeder(Question.of(tight, DESIGN, "speed")).settled(40.0, 2e-4).orbit
     assert again.amplitudes["yaw_angle"] == pytest.approx(1e-4, rel=GAP_PROPORTION)
@@ -42,6 +43,7 @@ def test_a_cycle_beyond_the_limit_is_refused_and_the_play_that_would_do_is_enoug
 
 def test_without_the_requirement_nothing_is_looked_for(gear):
     assert check_limit_cycles(gear, DESIGN) is None
+    assert not cycle_failures(None)
 
 
 @pytest.mark.parametrize(

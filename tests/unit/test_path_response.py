@@ -50,9 +50,15 @@ def test_a_missing_length_has_no_response():
 
 
 def test_the_tyre_s_own_line_is_shown_with_its_numbers():
-    own = {"kind": "moreland", "lateral_stiffness": 1.1e6, "time_constant": 2e-3}
-    block = {key: value for key, value in STRING.items() if key not in ("carcass_stiffness", "relaxation_length")} | {
-        "contact": own
-    }
-    tyre = tyre_of(**block | {"cornering_stiffness": 4.48e5, "aligning_stiffness": 3.4e4})
-    assert any(name.startswith("moreland, lateral_stiffness") for name in path_response(tyre, 150e3).lines)
+    """Its damping too: of long waves it takes no force, and 2 c_M (b/c) V (a + sigma)^2 of the moment, at 40 m/s."""
+    own = tyre_of(**STRING, contact={"kind": "pade", "order": 6, "damping_time": 2.6e-3})
+    found = path_response(own, 150e3)
+    label = "pade, order 6, damping_time 0.0026"
+    assert label in found.lines
+    force, moment = (list(RESPONSES).index(name) for name in ("F/theta", "M/theta"))
+    taken = 2 * 2.6e-3 * 40 * 0.4**2 / (2 * 0.1 * (0.3 * 0.4 + 0.1**2 / 3))
+    assert found.errors(label)[force, 0] < 0.05
+    assert found.errors(label)[moment, 0] == pytest.approx(taken, rel=0.01)
+    moreland = {"kind": "moreland", "lateral_stiffness": 1.1e6, "time_constant": 2e-3}
+    slopes = {"cornering_stiffness": 4.48e5, "aligning_stiffness": 3.4e4}
+    assert path_response(tyre_of(law="stiffness", half_contact_length=0.1, contact=moreland, **slopes), 150e3) is None

@@ -62,4 +62,8 @@ class Pade(StringLine):
 
     def leaves_out(self) -> tuple[str, ...]:
         """How far an approximation reaches."""
-        return (f"contact memory beyond 2 a w/V = {self.order} (tyre.contact pade, order {self.order}; memory is exact)",)
+        found = f"contact memory beyond 2 a w/V = {self.order} (tyre.contact pade, order {self.order}; memory is exact)"
+        damped = (
+            "that damping of the carcass is a loss per cycle rather than per rate: with damping_time it grows with the speed"
+        )
+        return (found,) if self.damping_time is None else (found, damped)

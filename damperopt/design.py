@@ -39,13 +39,7 @@ from .optimum.stock import StockSearch, of_chosen_sizes, of_stock
 from .proof.certify import certify
 from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
-from .results import (
-    Certificate,
-    DecayCheck,
-    DesignResult,
-    MassResult,
-    Verification,
-)
+from .results import Certificate, DecayCheck, DesignResult, MassResult, Verification
 from .stability.fail_safe import passive_rest
 from .study.components import optimisable
 from .study.study import Study

@@ -9,12 +9,17 @@ import flint
 from .answers.bound import MassBound
 from .errors import CertificateError, ConfigError
 from .optimum.branch import lower_bound
+from .proof.lightness import Lightness
 from .proof.optimality import check_bound
 from .proof.yaw import Contour, YawGear
 from .results import DesignResult
+from .stability.linear import LinearModel
 from .study.study import Study
 
 __all__ = ["mass_bound"]
+
+ROOT = 1e-5
+"""Of D at a root over D a hundredth beside it."""
 
 CONTRADICTION = 1e-6
 """Relative, by which a bound may lie above a design that meets every requirement to the tolerance of the program."""
@@ -40,6 +45,8 @@ def mass_bound(study: Study, result: DesignResult) -> MassBound:
     found, solver = result.mass.total, study.solver
     try:
         gear = YawGear(study)
+        if result.design and not reduces(study, result, gear):
+            return MassBound(why="stiffness and damping reach this gear through more than the numbers of the bound")
         tree = lower_bound(study, found, solver.bound_gap, solver.bound_seconds, _oracle(gear))
         certificate = tree.certificate()
         checked = check_bound(study, certificate)
@@ -63,6 +70,32 @@ def mass_bound(study: Study, result: DesignResult) -> MassBound:
         finished=tree.finished,
         certificate=certificate,
     )
+
+
+def reduces(study: Study, result: DesignResult, gear: YawGear) -> bool:
+    """Whether the rightmost root of the design's own model is one of its reduced form.
+
+    Parameters
+    ----------
+    study : Study
+    result : DesignResult
+    gear : YawGear
+        Of the study.
+    """
+    light = Lightness(study)
+    if not light.numbers:
+        return True
+    values = light.function(light.vector(result.design | result.derived | result.limit_event)).full().ravel()
+    k0, kappa, tau = (*values[-len(light.numbers) :].tolist(), 0.0)[:3]
+    built, load = study.damper.with_damping(result.design, light.factor), study.envelope.loads[-1]
+    speed = study.envelope.speed.max
+    root = complex(LinearModel(study).at(built).roots(speed, load, 1)[0, 0])
+
+    def D(s: complex) -> complex:
+        D0, D1 = (complex(part) for part in gear.pair(speed, load).at(flint.acb(s.real, s.imag)))
+        return (1 + tau * s) * D0 + (k0 + kappa * s) * D1
+
+    return abs(D(root)) < ROOT * abs(D(root * (1 + 1e-2)))
 
 
 def covers(study: Study, stability: bool) -> str:
@@ -93,6 +126,8 @@ def _none(study: Study, result: DesignResult) -> str:
         return "sizes that exist are not searched by boxes; their list is"
     if study.damper.ROTARY:
         return "the layout has no parts to weigh"
+    if study.gear.strut is not None:
+        return "the shock strut moves, and the reduction of the bound holds for a frozen one alone"
     return ""
 
 

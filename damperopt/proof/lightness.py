@@ -149,7 +149,7 @@ class Lightness:
         study, rows = self._study, dict[str, Any]()
         sized: set[str] = set()
         for member in study.damper.members(made):
-            if member.kind == "arm":
+            if member.kind in ("arm", "beam"):
                 rows |= self._arm(member, event)
             if member.variable and member.variable not in sized:
                 sized.add(member.variable)

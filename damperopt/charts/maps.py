@@ -51,7 +51,7 @@ _UNARY = {ca.OP_NEG: "-{}", ca.OP_SQ: "{0} * {0}", ca.OP_TWICE: "2.0 * {}", ca.O
 _UNARY |= {ca.OP_ASSIGN: "{}", ca.OP_FABS: "abs({})", ca.OP_SIGN: "float(({0} > 0) - ({0} < 0))"}
 _UNARY |= {
     getattr(ca, f"OP_{name.upper()}"): f"math.{name}({{}})"
-    for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")
+    for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "exp", "log")
 }
 
 TINY = 1e-300

@@ -18,6 +18,7 @@ import numpy as np
 __all__ = [
     "Expr",
     "absolute",
+    "arsinh",
     "atan",
     "cos",
     "exp",
@@ -39,14 +40,17 @@ Expr: TypeAlias = Any
 """A float, a complex number, an array, a ball or a symbol."""
 
 
+_OF_ARRAYS = {"atan": "arctan", "asinh": "arcsinh"}
+
+
 def _applied(name: str, x: Expr) -> Expr:
     if isinstance(x, (int, float)):
         return getattr(math, name)(x)
     if isinstance(x, complex):
         return getattr(cmath, name)(x)
     if isinstance(x, (np.ndarray, np.generic)):
-        return getattr(np, {"atan": "arctan"}.get(name, name))(x)
-    method = getattr(x, name, None) or getattr(x, {"atan": "arctan"}[name])
+        return getattr(np, _OF_ARRAYS.get(name, name))(x)
+    method = getattr(x, name, None) or getattr(x, _OF_ARRAYS[name])
     return method()
 
 
@@ -83,6 +87,11 @@ def exp(x: Expr) -> Expr:
 def log(x: Expr) -> Expr:
     """Natural logarithm."""
     return _applied("log", x)
+
+
+def arsinh(x: Expr) -> Expr:
+    """ln(x + sqrt(x^2 + 1))"""
+    return _applied("asinh", x)
 
 
 def absolute(x: Expr) -> Expr:

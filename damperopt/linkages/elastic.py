@@ -24,7 +24,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, GetJsonSchemaHandler, Tag, model_validator
 from pydantic_core import CoreSchema
 
-from ..expressions.calculus import Expr, sqrt
+from ..expressions.calculus import Expr, arsinh, exp, sqrt
 from ..ports.linkage import Compliant, Linkage
 from ..quantities.record import Length, Record, SeriesStiffness, TorsionalStiffness, refuse
 
@@ -122,11 +122,14 @@ class LinkForm(Record):
         return L / 2 if self.hinge_width is None else self.hinge_width
 
     def overhang(self, half: Expr) -> Expr:
-        """Of a beam with its end `half` [m] from the axis, beside the strut, and never quite nothing [m]."""
+        """Of a beam with its end `half` [m] from the axis, beside the strut, and never quite nothing [m].
+
+        (x + sqrt(x^2 + 4 e^2))/2, smooth for the optimiser, with x beside the strut: of ln a bounds see that it is monotone.
+        """
         if self.strut_width is None:
             return half
-        beside = half - self.strut_width / 2
-        return (beside + sqrt(beside**2 + 4 * LEAST_OVERHANG**2)) / 2  # smooth for the optimiser
+        wide = 2 * LEAST_OVERHANG
+        return LEAST_OVERHANG * exp(arsinh(half / wide - self.strut_width / 2 / wide))
 
 
 class SupportForm(Record):

@@ -8,7 +8,10 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["Affine", "Bounded", "Boxes", "chord", "either", "expit", "short", "short_slope", "softplus"]
+__all__ = ["Affine", "Bounded", "Boxes", "below_arsinh", "chord", "either", "expit", "short", "short_slope", "softplus"]
+
+TOUCHES = 4
+"""Steps to where a line from the upper end touches; each leaves a line below."""
 
 NEAR = 1e-9
 """Width of an interval below which its chord is its tangent."""
@@ -99,3 +102,18 @@ def chord(f: Callable[[Any], Any], slope: Callable[[Any], Any], low: np.ndarray,
     """Slope of the chord of f; of its tangent where the interval has no width."""
     wide = high - low > NEAR * (1 + np.abs(high))
     return np.where(wide, (f(high) - f(low)) / np.where(wide, high - low, 1.0), slope(low))
+
+
+def below_arsinh(low: np.ndarray, high: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Slope and constant of a line below arsinh, which is convex up to 0 and concave beyond: near to it at a place."""
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        return 1 / np.hypot(1, x)
+
+    touch = low
+    for _ in range(TOUCHES):  # of the line from the upper end; at the lower one it is the chord
+        steep = chord(np.arcsinh, slope, touch, high)
+        touch = np.maximum(low, -np.sqrt(np.maximum(1 / steep**2 - 1, 0)))
+    convex = (high <= 0) | (at < touch)
+    place, p = np.where(convex, at, touch), np.where(convex, slope(at), steep)
+    return p, np.arcsinh(place) - p * place

@@ -19,6 +19,7 @@ class Log:
     """sign e^u with u = constant + sum of coefficient times atom.
 
     On boxes `open` the sign is not known, and nothing that follows holds but for a square: `most` is what u is at most there.
+    A difference keeps its two `terms`: in itself, not in its logarithm, it has bounds whatever its sign.
     """
 
     sign: int
@@ -26,6 +27,7 @@ class Log:
     atoms: dict[int, tuple[Any, Bounded]]
     open: Any = False
     most: Any = None
+    terms: tuple[Log, Log] | None = None
 
     def scaled(self, factor: Any, sign: int | None = None) -> Log:
         atoms = {key: (c * factor, atom) for key, (c, atom) in self.atoms.items()}
@@ -71,6 +73,7 @@ METHODS = {
     ca.OP_LOG: "logarithm",
     ca.OP_EXP: "exponential",
     ca.OP_FABS: "magnitude",
+    ca.OP_ASINH: "arsinh",
     ca.OP_SIN: "sine",
     ca.OP_COS: "cosine",
     ca.OP_FMAX: "larger",

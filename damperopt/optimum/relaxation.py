@@ -20,7 +20,7 @@ import casadi as ca
 import numpy as np
 
 from ..expressions.graph import walk
-from .affine import Affine, Bounded, Boxes, chord, either, expit, short, short_slope, softplus
+from .affine import Affine, Bounded, Boxes, below_arsinh, chord, either, expit, short, short_slope, softplus
 from .forms import METHODS, OF_FLOATS, Log, Piece, Truth
 
 __all__ = ["relaxed"]
@@ -151,6 +151,8 @@ class _Relaxations:
         if isinstance(x, float):
             return self._flat(x, x, x)
         if isinstance(x, Log):
+            if x.terms is not None:
+                return self._added(*x.terms)
             if np.any(x.open):
                 raise _Unbounded
             found = self._outer(self._sum_of(x), np.exp, np.exp, convex=True)
@@ -190,7 +192,8 @@ class _Relaxations:
         if isinstance(x, float):
             return -x
         if isinstance(x, Log):
-            return replace(x, sign=-x.sign)
+            terms = None if x.terms is None else (self.negative(x.terms[0]), self.negative(x.terms[1]))
+            return replace(x, sign=-x.sign, terms=terms)
         return Bounded(x.above * -1.0, x.below * -1.0, -x.high, -x.low, -x.at)
 
     def times(self, x: Any, y: Any) -> Any:
@@ -245,10 +248,14 @@ class _Relaxations:
             return x
         try:
             u, v = self._log(x), self._log(y)
-            return self._together(u, v) if u.sign == v.sign else self._difference(u, v)
+            return self._together(u, v) if u.sign == v.sign else replace(self._difference(u, v), terms=(u, v))
         except _Unbounded:
-            p, q = self._plain(x), self._plain(y)
-            return self._made(p.below + q.below, p.above + q.above, p.at + q.at, p.low + q.low, p.high + q.high)
+            return self._added(x, y)
+
+    def _added(self, x: Any, y: Any) -> Bounded:
+        """Of either sign."""
+        p, q = self._plain(x), self._plain(y)
+        return self._made(p.below + q.below, p.above + q.above, p.at + q.at, p.low + q.low, p.high + q.high)
 
     def minus(self, x: Any, y: Any) -> Any:
         return self.plus(x, self.negative(y))
@@ -298,7 +305,13 @@ class _Relaxations:
         return self._atom(self._plain(x))
 
     def magnitude(self, x: Any) -> Any:
-        return replace(self._log(x), sign=1, most=None)
+        return replace(self._log(x), sign=1, most=None, terms=None)
+
+    def arsinh(self, x: Any) -> Bounded:
+        x = self._plain(x)
+        (p, c), (q, d) = below_arsinh(x.low, x.high, x.at), below_arsinh(-x.high, -x.low, -x.at)  # odd
+        ends = np.arcsinh(x.low), np.arcsinh(x.high)
+        return self._made(x.below * p + c, x.above * q + -d, np.arcsinh(x.at), *ends)
 
     def sine(self, x: Any) -> Any:
         return self._of_angle(x, lambda v: np.log(np.sin(v)), lambda v: 1 / np.tan(v), 0.0, math.pi)

@@ -97,6 +97,7 @@ _OPERATIONS: dict[int, Callable[..., flint.arb]] = {
     ca.OP_ATAN: flint.arb.atan,
     ca.OP_SQRT: flint.arb.sqrt,
     ca.OP_EXP: flint.arb.exp,
+    ca.OP_ASINH: flint.arb.asinh,
     ca.OP_LOG: flint.arb.log,
 }
 

@@ -22,8 +22,8 @@ import numpy as np
 
 from ..expressions.graph import walk
 from .forms import RULES, Atom, Piece, Power, Truth, joined, positive, product
-from .intervals import Interval, exponential, logarithm, of
-from .lines import Line, Places, added, chord, either, entropy, short, softplus
+from .intervals import Interval, exponential, logarithm, monotone, of
+from .lines import Line, Places, added, arsinh_gap, arsinh_slope, chord, either, entropy, short, softplus
 
 __all__ = ["lines"]
 
@@ -107,6 +107,8 @@ class _Rules:
             line = self._nothing.raised(x)
             constant = np.full(self._places.shape[0], x)
             return Atom(line, line, of(constant), constant)
+        if isinstance(x, Power) and x.terms is not None:
+            return self._sum(*x.terms)
         if not isinstance(x, Power) or np.any(x.open):
             raise _Unknown
         found = self._bent(self._value(x), True)
@@ -169,7 +171,8 @@ class _Rules:
         if isinstance(x, float):
             return -x
         if isinstance(x, Power):
-            return replace(x, sign=-x.sign)
+            terms = None if x.terms is None else (self.negative(x.terms[0]), self.negative(x.terms[1]))
+            return replace(x, sign=-x.sign, terms=terms)
         return Atom(x.above.reversed(), x.below.reversed(), -x.range, -x.at)
 
     def times(self, x: Any, y: Any) -> Any:
@@ -237,10 +240,14 @@ class _Rules:
             u, v = self._power(x), self._power(y)
             if u.sign == v.sign:
                 return Power(u.sign, of(0.0), ((1.0, self._together(u, v)),), u.open | v.open)
-            return self._apart(u, v)
+            return replace(self._apart(u, v), terms=(u, v))
         except _Unknown:
-            p, q = self._plain(x), self._plain(y)
-            return Atom(p.below.plus(q.below), p.above.plus(q.above), p.range + q.range, p.at + q.at)
+            return self._sum(x, y)
+
+    def _sum(self, x: Any, y: Any) -> Atom:
+        """Itself, of either sign."""
+        p, q = self._plain(x), self._plain(y)
+        return Atom(p.below.plus(q.below), p.above.plus(q.above), p.range + q.range, p.at + q.at)
 
     def minus(self, x: Any, y: Any) -> Any:
         return self.plus(x, self.negative(y))
@@ -316,6 +323,14 @@ class _Rules:
 
     def exponential(self, x: Any) -> Any:
         return self._single(self._plain(x))
+
+    def arsinh(self, x: Any) -> Any:
+        """Odd: a line above it is one below its mirror image."""
+        x = self._plain(x)
+        p, q = arsinh_slope(x.range, x.at), arsinh_slope(-x.range, -x.at)
+        below = x.below.times(p).raised(arsinh_gap(x.range, p))
+        above = x.above.times(q).raised(-arsinh_gap(-x.range, q))
+        return Atom(below, above, monotone(np.arcsinh, x.range), np.arcsinh(x.at))
 
     def larger(self, x: Any, y: Any) -> Any:
         """Of two positive numbers: not below the one that is larger at the place, and not above their sum."""

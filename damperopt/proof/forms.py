@@ -42,6 +42,7 @@ class Power:
     """sign times e^(constant + sum of coefficient times atom).
 
     On boxes `open` the sign is not known, and nothing that follows holds but for a square: its logarithm is 2 `most` at most.
+    `terms`: of a difference, which has lines of its own whatever its sign.
     """
 
     sign: int
@@ -49,6 +50,7 @@ class Power:
     atoms: tuple[tuple[Any, Atom], ...]
     open: Any = False
     most: Any = None
+    terms: tuple[Power, Power] | None = None
 
 
 def product(c: Any, factor: float) -> Any:
@@ -71,7 +73,7 @@ def joined(first: tuple[tuple[Any, Atom], ...], second: tuple[tuple[Any, Atom], 
 
 def positive(u: Power) -> Power:
     """The magnitude."""
-    return replace(u, sign=1)
+    return replace(u, sign=1, terms=None)
 
 
 RULES = {
@@ -90,6 +92,7 @@ RULES = {
     ca.OP_LOG: "logarithm",
     ca.OP_EXP: "exponential",
     ca.OP_FABS: "magnitude",
+    ca.OP_ASINH: "arsinh",
     ca.OP_FMAX: "larger",
     ca.OP_LT: "less",
     ca.OP_LE: "less",

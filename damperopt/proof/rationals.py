@@ -90,6 +90,7 @@ _OPERATIONS: dict[int, Callable[..., flint.fmpq]] = {
     ca.OP_TAN: _exact_at_zero(flint.arb.tan, 0),
     ca.OP_ATAN: _exact_at_zero(flint.arb.atan, 0),
     ca.OP_SQRT: _exact_at_zero(flint.arb.sqrt, 0),
+    ca.OP_ASINH: _exact_at_zero(flint.arb.asinh, 0),
     ca.OP_EXP: _exact_at_zero(flint.arb.exp, 1),
     ca.OP_LOG: _irrational(flint.arb.log),
 }

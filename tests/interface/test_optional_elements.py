@@ -44,7 +44,7 @@ def test_analysed_charted_and_simulated(study):
     low, high, load = study.envelope.speed.min, study.envelope.speed.max, study.envelope.loads[0]
     gear = damperopt.linear_gear(study)
     modes = damperopt.track_modes(gear, np.linspace(low, high, 20), load)
-    assert len(modes.names) == len(gear.states)
+    assert len(modes.names) == len(gear.principal)
     assert damperopt.certify(study, study.start, margin=0.0).reason
     worst = damperopt.worst_points(gear, study.envelope)[0]
     np.testing.assert_allclose(worst.abscissa, gear.abscissa(worst.speed, worst.load)[0], rtol=1e-9)

@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..errors import CertificateError, ConfigError
 from ..results import DesignResult
 from ..stability.linear import LinearModel
@@ -26,10 +28,6 @@ MET = 1e-6
 
 BOUND = 1e-12
 """Relative: rounding of a bound that is computed again."""
-
-
-UNKNOWN = ("release",)
-"""Rows that are bounds of a force, and no requirements."""
 
 
 @dataclass(frozen=True)
@@ -96,10 +94,16 @@ def _mass(study: Study, result: DesignResult) -> tuple[bool, str]:
     assert result.mass is not None
     light = Lightness(study)
     values = light.function(light.vector(result.design | result.derived | result.limit_event)).full().ravel()
-    mass, ratios = float(values[0]), values[1 : 1 + len(light.rows)]
+    rows = len(light.rows)
+    mass, numbers = float(values[0]), np.log(values[1 + rows :])
+    ratios = dict(zip(light.rows, values[1 : 1 + rows], strict=True))
     if not math.isclose(mass, result.mass.total, rel_tol=SAME):
         return False, f"the design weighs {mass:.9g} kg, the result says {result.mass.total:.9g}"
-    missed = [n for n, ratio in zip(light.rows, ratios, strict=True) if n not in UNKNOWN and not ratio <= math.exp(MET)]
+    if not math.isclose(sum(result.mass.parts.values()), mass, rel_tol=SAME):
+        return False, f"the parts weigh {sum(result.mass.parts.values()):.9g} kg, all of them {mass:.9g}"
+    if "release" in ratios and ratios.pop("release") * math.exp(light.peak(numbers, numbers)) > math.exp(MET):
+        return False, f"the damper carries more than {result.limit_event['damper_force']:.6g} N when it is let go"
+    missed = [name for name, ratio in ratios.items() if not ratio <= math.exp(MET)]
     if missed:
         return False, f"{missed[0]} is not met"
     return True, f"{mass:.6g} kg; {len(light.rows)} requirements of strength, strokes and lengths"

@@ -14,6 +14,7 @@ from damperopt.lightest import mass_bound
 from damperopt.optimum.affine import Boxes
 from damperopt.optimum.reduction import Reduction, yaw_numbers
 from damperopt.optimum.relaxation import relaxed
+from damperopt.proof.again import check_again
 from damperopt.proof.enclosures import lines
 from damperopt.proof.let_go import peak_at_least
 from damperopt.proof.lightness import Lightness
@@ -164,3 +165,31 @@ def test_true_structure_has_a_bound_below_its_optima():
 def test_no_bound_is_said_in_words():
     study = study_of("boeing", solver__bound_seconds=0)
     assert mass_bound(study, found(11.0)).why == "solver.bound_seconds is 0"
+
+
+LIGHTEST = {
+    "c_lambda": 31320.757385245128,
+    "k_lambda": 1834285.8456343876,
+    "L": 0.5221351720467983,
+    "gamma": 0.6980683739468112,
+    "A_piston": 0.00031934423249326644,
+    "rod_diameter": 0.012000000068047304,
+    "s_damper": 0.005198347607676666,
+    "A_link": 0.00010738797411713473,
+    "I_hinge": 6.701742955308238e-08,
+}
+"""`configs/minimal.yaml`, as it was found."""
+
+
+@pytest.mark.parametrize(("share", "holds"), [(1, True), (0.9, False)])
+def test_a_damper_cannot_be_sized_for_less_than_it_carries(share, holds):
+    """A piston and a force that are smaller alike meet every ratio of strength: the force itself is checked."""
+    study = load("configs/minimal.yaml")
+    design = LIGHTEST | {"A_piston": share * LIGHTEST["A_piston"]}
+    event = {"damper_force": share * 6610.425491737788}
+    light = Lightness(study)
+    mass = float(light.function(light.vector(design | event))[0])
+    result = found(mass).model_copy(update={"design": design, "limit_event": event})
+    finding = next(f for f in check_again(study, result, None) if f.claim == "mass and requirements")
+    assert finding.holds == holds, finding.words
+    assert holds or "carries more than" in finding.words

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import CertificateError, ConfigError
 from ..results import DesignResult
+from ..stability.fail_safe import passive_rest
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from .certify import certify
@@ -60,6 +61,8 @@ def check_again(study: Study, result: DesignResult, tree: Mapping[str, Any] | No
         ("stability", lambda: _stability(study, result)),
         ("mass and requirements", lambda: _mass(study, result)),
     ]
+    if (rest := passive_rest(study)) is not None:
+        steps.insert(1, ("stability with the actuator off", lambda: _off(rest, result)))
     if study.required.decay is not None:
         steps.append(("decay", lambda: _decay(study, result)))
     steps.append(("lower bound", lambda: _bound(study, result, tree)))
@@ -83,6 +86,11 @@ def _stability(study: Study, result: DesignResult) -> tuple[bool, str]:
         if least < study.required.damping_ratio:
             return False, f"the yaw mode has the damping ratio {least:.5g}"
     return True, f"{proof.reason}; eigenvalues on {grid.speeds} x {grid.loads} points: worst {grid.worst.abscissa:.6g} 1/s"
+
+
+def _off(rest: Study, result: DesignResult) -> tuple[bool, str]:
+    proof = certify(rest, result.design)
+    return proof.proved, f"margin {proof.margin:g} 1/s: {proof.reason}"
 
 
 def _decay(study: Study, result: DesignResult) -> tuple[bool, str]:

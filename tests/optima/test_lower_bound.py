@@ -193,3 +193,17 @@ def test_a_damper_cannot_be_sized_for_less_than_it_carries(share, holds):
     finding = next(f for f in check_again(study, result, None) if f.claim == "mass and requirements")
     assert finding.holds == holds, finding.words
     assert holds or "carries more than" in finding.words
+
+
+def test_a_damper_that_needs_its_actuator_is_found_out():
+    """Enough with the actuator, unstable without it: both proofs are made again."""
+    study = load("configs/nose_gear_active.yaml")
+    sizes = {"c_lambda": 2460.0, "I_arm": 9.46e-8, "L": 0.355, "gamma": 0.79, "b": 0.1585, "A_piston": 9.11e-5}
+    sizes |= {"rod_diameter": 0.012, "s_damper": 7.47e-3, "A_link": 7.4e-5, "I_hinge": 3.98e-8}
+    design = sizes | {"A_support": 4.18e-5, "I_foot": 6.35e-9}
+    findings = check_again(study, found(5.0).model_copy(update={"design": design}), None)
+    assert next(findings).holds
+    off = next(findings)
+    assert off.claim == "stability with the actuator off"
+    assert not off.holds
+    assert "missed" in off.words

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..errors import ConfigError
 from ..motion.history import frozen_along, posed_along, simulate_along
 from ..motion.roll import Roll, Stretch, roll_of
 from ..motion.trajectory import Trajectory
 from ..output.folder import run_folder, write_run
 from ..output.tables import write_roll, write_trajectory
 from ..quantities.shown import scale
+from ..reading import printable
 from ..study.disturbances import Disturbance
 from ..study.history import History, read_history
 from ..study.study import Study
@@ -59,7 +61,13 @@ def run_along(
     own = any(history.column("yaw_torque") or [0.0])
     start = disturbance if asked or not own else None
     # a question that is not well posed leaves no folder behind
-    posed_along(study, values or study.start, history, start)
+    try:
+        posed_along(study, values or study.start, history, start)
+    except ConfigError as error:
+        named = [
+            problem.replace("history: ", f"{printable(file)}: ", problem.startswith("history: ")) for problem in error.problems
+        ]
+        raise ConfigError(named) from None
     folder = run_folder(output, f"{stem}-simulation")
     with all_or_nothing():
         motion = simulate_along(study, values, history=history, disturbance=start, engine=engine)

@@ -22,9 +22,7 @@ def cycles(
         str, typer.Option(metavar="NAME[=LOW:HIGH]", help="speed, vertical_load or any key, such as c_lambda=1e3:1e5.")
     ] = "speed",
     design: DesignOption = None,
-    begin: Annotated[
-        str, typer.Option("--from", metavar="hopf|simulation", help="Where branches begin. [default: hopf]")
-    ] = "hopf",
+    begin: Annotated[str, typer.Option("--from", metavar="hopf|simulation", help="Where branches begin.")] = "hopf",
     speed: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
     load: Annotated[str, typer.Option(help="Where it is not varied. [default: the largest of the envelope]")] = "",
     threshold: Annotated[

@@ -74,7 +74,7 @@ def _asked(
     from ..tyres.property_file import block_of_file
     from .arguments import quantity
 
-    if (file is None) == (not size) or (bool(kind or rated) != bool(size)):
+    if (file is None) == (not size) or (bool(kind or rated) and not size):
         what = "a study or a property file, or --size with --type and --rated-pressure"
         raise ConfigError(f"tyre: found {'both' if file and size else 'neither'}; allowed: {what}")
     if size:

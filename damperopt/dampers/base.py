@@ -142,6 +142,10 @@ class Damper(Record):
         """Whether the stiffness of a part of the chain comes from its section; the study's compliance says it."""
         return False
 
+    def given_compliance(self) -> dict[str, Any]:
+        """Stiffnesses that the study gives as numbers, by the names of the parts."""
+        return {}
+
     def damping_factors(self) -> tuple[float, float]:
         """Least and largest factor on the damping that the requirements must survive; both 1 where it is certain."""
         return 1.0, 1.0

@@ -153,7 +153,7 @@ class Hydraulic(Oiled):
     def leaves_out(self) -> tuple[str, ...]:
         """The oil column and its temperature, where they are not given."""
         words = []
-        if self.series_stiffness is None and not self.is_sized("damper"):
+        if "damper" not in self.given_compliance() and not self.is_sized("damper"):
             words.append("compliance of oil column, rod and brackets in series with the damper (damper.compliance)")
         if self.oil is None:
             words.append("oil that is cold or hot (damper.oil)")

@@ -70,9 +70,8 @@ class Course:
             if strut is None:
                 raise ConfigError("history: stroke: of a gear without gear.strut; allowed: no such column, or a shock strut")
             if (most := values[2].max()) > strut.longest:
-                raise ConfigError(
-                    f"history: stroke: {most:g} m; allowed: at most {strut.longest:g} m, the travel of gear.strut"
-                )
+                found = f"stroke at {time[values[2].argmax()]:g} s: {most:g} m"
+                raise ConfigError(f"history: {found}; allowed: at most {strut.longest:g} m, the travel of gear.strut")
         strokes = [None] * time.size if columns[2] is None else values[2].tolist()
         for load, stroke, t in zip(values[1].tolist(), strokes, time.tolist(), strict=True):
             if words := study.beyond_data(load, stroke):

@@ -7,8 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..errors import CertificateError, ConfigError
 from ..results import DesignResult
+from ..stability.fail_safe import passive_rest
 from ..stability.linear import LinearModel
 from ..study.study import Study
 from .certify import certify
@@ -26,10 +29,6 @@ MET = 1e-6
 
 BOUND = 1e-12
 """Relative: rounding of a bound that is computed again."""
-
-
-UNKNOWN = ("release",)
-"""Rows that are bounds of a force, and no requirements."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +61,8 @@ def check_again(study: Study, result: DesignResult, tree: Mapping[str, Any] | No
         ("stability", lambda: _stability(study, result)),
         ("mass and requirements", lambda: _mass(study, result)),
     ]
+    if (rest := passive_rest(study)) is not None:
+        steps.insert(1, ("stability with the actuator off", lambda: _off(rest, result)))
     if study.required.decay is not None:
         steps.append(("decay", lambda: _decay(study, result)))
     steps.append(("lower bound", lambda: _bound(study, result, tree)))
@@ -87,6 +88,11 @@ def _stability(study: Study, result: DesignResult) -> tuple[bool, str]:
     return True, f"{proof.reason}; eigenvalues on {grid.speeds} x {grid.loads} points: worst {grid.worst.abscissa:.6g} 1/s"
 
 
+def _off(rest: Study, result: DesignResult) -> tuple[bool, str]:
+    proof = certify(rest, result.design)
+    return proof.proved, f"margin {proof.margin:g} 1/s: {proof.reason}"
+
+
 def _decay(study: Study, result: DesignResult) -> tuple[bool, str]:
     found = check_decay(study, result.design)
     return found.passed, f"{found.ratio:.5f} of the first amplitude at {found.speed:.4g} m/s, required {found.limit:.5f}"
@@ -96,10 +102,16 @@ def _mass(study: Study, result: DesignResult) -> tuple[bool, str]:
     assert result.mass is not None
     light = Lightness(study)
     values = light.function(light.vector(result.design | result.derived | result.limit_event)).full().ravel()
-    mass, ratios = float(values[0]), values[1 : 1 + len(light.rows)]
+    rows = len(light.rows)
+    mass, numbers = float(values[0]), np.log(values[1 + rows :])
+    ratios = dict(zip(light.rows, values[1 : 1 + rows], strict=True))
     if not math.isclose(mass, result.mass.total, rel_tol=SAME):
         return False, f"the design weighs {mass:.9g} kg, the result says {result.mass.total:.9g}"
-    missed = [n for n, ratio in zip(light.rows, ratios, strict=True) if n not in UNKNOWN and not ratio <= math.exp(MET)]
+    if not math.isclose(sum(result.mass.parts.values()), mass, rel_tol=SAME):
+        return False, f"the parts weigh {sum(result.mass.parts.values()):.9g} kg, all of them {mass:.9g}"
+    if "release" in ratios and ratios.pop("release") * math.exp(light.peak(numbers, numbers)) > math.exp(MET):
+        return False, f"the damper carries more than {result.limit_event['damper_force']:.6g} N when it is let go"
+    missed = [name for name, ratio in ratios.items() if not ratio <= math.exp(MET)]
     if missed:
         return False, f"{missed[0]} is not met"
     return True, f"{mass:.6g} kg; {len(light.rows)} requirements of strength, strokes and lengths"

@@ -27,6 +27,7 @@ from ..strength.materials import allowable_stress
 from ..strength.members import allowables, distance, fatigue_ratio, least_sections, root_stress
 from ..study.study import Study
 from .intervals import Interval, logarithm
+from .let_go import peak_at_least
 
 __all__ = ["Lightness"]
 
@@ -95,6 +96,11 @@ class Lightness:
             known["height_part"] = 1 / math.tan(gamma)
             known["side_part"] = known.get("b", 0.0) / known["reach"]
         return np.array([known[name] for name in self.names])
+
+    def peak(self, low: np.ndarray, high: np.ndarray) -> float:
+        """ln of a lower bound of what the damper carries, in parts of the limit torque, on a box of ln of the yaw numbers."""
+        cold = np.array([0.0, 1.0, 1.0]) * math.log(self.coldest)
+        return peak_at_least(tuple(low + cold), tuple(high + cold), self.inertia)
 
     def _variables(self) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any], dict[str, Any]]:
         """Symbols, their bounds, what the components see, and bounds that became ratios."""

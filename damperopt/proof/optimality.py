@@ -20,7 +20,6 @@ import numpy as np
 from ..study.study import Study
 from .enclosures import lines
 from .intervals import Interval, exponential, of
-from .let_go import peak_at_least
 from .lightness import Lightness
 from .lines import Line, Places
 from .yaw import Contour, YawGear
@@ -110,7 +109,7 @@ class _Check:
         self._study = study
         for key, own in (("variables", light.names), ("numbers", light.numbers)):
             if sorted(certificate.get(key) or []) != sorted(own):
-                raise _Broken(f"{key} of the certificate are {certificate.get(key)}, those of the study {list(own)}")
+                raise _Broken(f"{key} of the certificate are {certificate.get(key, 'missing')}, those of the study {list(own)}")
         self._order = [certificate["variables"].index(name) for name in light.names]
         self._number_order = [certificate["numbers"].index(name) for name in light.numbers]
         self._points = certificate.get("points") or []
@@ -307,11 +306,10 @@ class _Check:
         found = np.full(len(rows.leaf), -math.inf)
         for j, i in enumerate(rows.leaf):
             if rows.weights[j].get("release", 0.0) > 0:
-                cold = np.array([0.0, 1.0, 1.0]) * math.log(self._light.coldest)
-                low, high = (leaves[i].numbers[:, end] + cold for end in (0, 1))
+                low, high = leaves[i].numbers.T
                 key = (*low, *high)
                 if key not in known:
-                    known[key] = peak_at_least(tuple(low), tuple(high), self._light.inertia)
+                    known[key] = self._light.peak(low, high)
                 found[j] = known[key]
         return found
 

@@ -143,12 +143,13 @@ def union_of(classes: Mapping[str, type[Record]], tags: tuple[str, ...], rewrite
             data = {first: data}
         if not isinstance(data, dict):
             return data
-        data = rewrite(dict(data))
+        given, data = data, rewrite(dict(data))
         data |= {tag: spellings.get((tag, data[tag]), data[tag]) for tag in tags if isinstance(data.get(tag), str)}
         if named(data) not in classes:
             found = data.get(first)
+            written = first if first in given else next((key for key in given if key not in data), first)
             raise refuse(
-                "" if alone else first,
+                "" if alone else written,
                 "missing key" if found is None else f"{reprlib.repr(found)} is unknown",
                 ", ".join(classes),
             )

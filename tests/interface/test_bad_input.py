@@ -97,6 +97,7 @@ BROKEN = {
     "tolerance": (NAME, f"{NAME}\nsolver: {{integration_tolerance: 1}}", "solver.integration_tolerance", "1 is out of range"),
     "no reserve": (NAME, f"{NAME}\nsolver: {{decay_reserve: 0}}", "solver.decay_reserve", "0 is out of range"),
     "all reserve": (NAME, f"{NAME}\nsolver: {{decay_reserve: 1}}", "solver.decay_reserve", "1 is out of range"),
+    "contact line": ("contact: leading_point", "contact: {kind: memori}", "tyre.contact.kind:", "'memori' is unknown"),
     "one speed": (NAME, f"{NAME}\nsolver: {{decay_speeds: 1}}", "solver.decay_speeds", "found 1; input should be"),
 }
 

@@ -448,10 +448,12 @@ def test_along_a_history(call, configs, tmp_path):
         (("--history", "roll.csv", "--speed", "40"), "--speed: found 40 beside --history, which says it"),
         (("--history", "roll.csv", "--duration", "1"), "--duration: found 1 beside --history"),
         (("--history", "nowhere.csv"), "nowhere.csv: cannot be read"),
+        (("--history", "stroke.csv"), "stroke.csv: stroke: of a gear without gear.strut"),
     ],
 )
 def test_questions_about_histories_that_are_refused(call, configs, tmp_path, options, message):
     (tmp_path / "roll.csv").write_text(HISTORY)
+    (tmp_path / "stroke.csv").write_text("time [s], speed [m/s], load [kN], stroke [mm]\n0, 40, 150, 0\n1, 30, 150, 9\n")
     done = call("simulate", configs / "thesis_gear.yaml", *options, "-o", "out")
     assert done.code == 2
     assert message in " ".join(done.err.split())

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from damperopt.answers.sums import write_sums
 from damperopt.cli import app
+from damperopt.errors import ConfigError
 from damperopt.proof.again import check_again
 from damperopt.results import load_result
 from damperopt.study import config
@@ -48,6 +49,11 @@ def test_a_run_holds_and_an_altered_digit_does_not(run, tmp_path):
         assert f"{name} is not what was written" in words
 
 
+def test_a_file_is_no_run(run):
+    with pytest.raises(ConfigError, match="is a file; allowed: the folder"):
+        CliRunner().invoke(app, ["verify", str(run / "result.json")], catch_exceptions=False)
+
+
 @pytest.mark.bound
 def test_new_sums_do_not_save_a_claim_that_is_false(run, tmp_path):
     study = config.load(run / "config.yaml")
@@ -61,6 +67,8 @@ def test_new_sums_do_not_save_a_claim_that_is_false(run, tmp_path):
     lighter = honest.mass.model_copy(update={"total": honest.mass.total * (1 - 1e-6)})
     assert fails() == set()
     assert "mass and requirements" in fails(mass=lighter)
+    lighter_damper = {**honest.mass.parts, "damper": 0.9 * honest.mass.parts["damper"]}
+    assert fails(mass=honest.mass.model_copy(update={"parts": lighter_damper})) == {"mass and requirements"}
     assert fails(design={**honest.design, "c_lambda": honest.design["c_lambda"] * 0.99}) >= {"stability"}
     tighter = {**honest.bound.__dict__, "mass": honest.bound.mass * (1 + 1e-6)}
     assert fails(bound=type(honest.bound)(**tighter)) == {"lower bound"}

@@ -17,6 +17,7 @@ from damperopt.linkages.elastic import LinkForm
 from damperopt.optimum.affine import Boxes
 from damperopt.optimum.reduction import Reduction, yaw_numbers
 from damperopt.optimum.relaxation import relaxed
+from damperopt.proof.again import check_again
 from damperopt.proof.enclosures import lines
 from damperopt.proof.intervals import Interval
 from damperopt.proof.let_go import peak_at_least
@@ -208,3 +209,45 @@ def test_a_line_below_arsinh_is_one_to_the_last_digit():
 def test_no_bound_is_said_in_words():
     study = study_of("boeing", solver__bound_seconds=0)
     assert mass_bound(study, found(11.0)).why == "solver.bound_seconds is 0"
+
+
+LIGHTEST = {
+    "c_lambda": 31320.757385245128,
+    "k_lambda": 1834285.8456343876,
+    "L": 0.5221351720467983,
+    "gamma": 0.6980683739468112,
+    "A_piston": 0.00031934423249326644,
+    "rod_diameter": 0.012000000068047304,
+    "s_damper": 0.005198347607676666,
+    "A_link": 0.00010738797411713473,
+    "I_hinge": 6.701742955308238e-08,
+}
+"""`configs/minimal.yaml`, as it was found."""
+
+
+@pytest.mark.parametrize(("share", "holds"), [(1, True), (0.9, False)])
+def test_a_damper_cannot_be_sized_for_less_than_it_carries(share, holds):
+    """A piston and a force that are smaller alike meet every ratio of strength: the force itself is checked."""
+    study = load("configs/minimal.yaml")
+    design = LIGHTEST | {"A_piston": share * LIGHTEST["A_piston"]}
+    event = {"damper_force": share * 6610.425491737788}
+    light = Lightness(study)
+    mass = float(light.function(light.vector(design | event))[0])
+    result = found(mass).model_copy(update={"design": design, "limit_event": event})
+    finding = next(f for f in check_again(study, result, None) if f.claim == "mass and requirements")
+    assert finding.holds == holds, finding.words
+    assert holds or "carries more than" in finding.words
+
+
+def test_a_damper_that_needs_its_actuator_is_found_out():
+    """Enough with the actuator, unstable without it: both proofs are made again."""
+    study = load("configs/nose_gear_active.yaml")
+    sizes = {"c_lambda": 2460.0, "I_arm": 9.46e-8, "L": 0.355, "gamma": 0.79, "b": 0.1585, "A_piston": 9.11e-5}
+    sizes |= {"rod_diameter": 0.012, "s_damper": 7.47e-3, "A_link": 7.4e-5, "I_hinge": 3.98e-8}
+    design = sizes | {"A_support": 4.18e-5, "I_foot": 6.35e-9}
+    findings = check_again(study, found(5.0).model_copy(update={"design": design}), None)
+    assert next(findings).holds
+    off = next(findings)
+    assert off.claim == "stability with the actuator off"
+    assert not off.holds
+    assert "missed" in off.words

@@ -61,7 +61,7 @@ STRUT = {"stroke": {"load": [20e3, 160e3], "value": [0.05, 0.3]}}
     ("changes", "rows", "message"),
     [
         ({}, [(0, 50e3, 0.1), (1, 60e3, 0.1)], "history: stroke: of a gear without gear.strut"),
-        ({"gear__strut": STRUT}, [(0, 50e3, 0.1), (1, 60e3, 0.4)], "history: stroke: 0.4 m; allowed: at most 0.3 m"),
+        ({"gear__strut": STRUT}, [(0, 50e3, 0.1), (1, 60e3, 0.4)], "history: stroke at 1 s: 0.4 m; allowed: at most 0.3 m"),
         ({"gear__strut": STRUT}, [(0, 50e3, None), (1, 170e3, None)], "history: load at 1 s: 170 kN is beyond the table"),
     ],
 )

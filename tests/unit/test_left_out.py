@@ -29,6 +29,12 @@ def test_arm_of_the_headline_by_hand(main_gear_with_decay):
     assert stress / (1103e6 / 1.5) == pytest.approx(1.97, abs=0.005)
 
 
+def test_a_stiffness_that_is_given_is_not_left_out(configs):
+    left_out = "compliance of oil column, rod and brackets in series with the damper (damper.compliance)"
+    assert left_out not in damperopt.load(configs / "landing_roll.yaml").damper.leaves_out()
+    assert left_out in damperopt.load(configs / "thesis_gear.yaml").damper.leaves_out()
+
+
 def test_the_whole_gear_leaves_nothing_of_this_out(configs):
     study = damperopt.load(configs / "main_gear.yaml")
     assert left_out_by_number(study, study.start) == ()

@@ -40,8 +40,8 @@ from .proof.certify import certify
 from .proof.check import check_damping, check_decay, check_grid
 from .provenance import provenance_of
 from .results import Certificate, DecayCheck, DesignResult, MassResult, Verification
-from .stability.fail_safe import passive_rest
 from .study.components import optimisable
+from .study.passive_rest import passive_rest
 from .study.study import Study
 from .workers import executor
 

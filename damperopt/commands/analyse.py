@@ -33,11 +33,11 @@ def analyse(
     from ..output.tables import write_modes
     from ..proof.certify import certify
     from ..stability.critical import critical_speeds, marginal_throughout
-    from ..stability.fail_safe import passive_rest
     from ..stability.linear import LinearModel
     from ..stability.modes import track_modes
     from ..stability.over_damping import worst_over_damping
     from ..stability.wavelength import shortest_wavelength
+    from ..study.passive_rest import passive_rest
     from . import summary
     from .arguments import speed_grid
 

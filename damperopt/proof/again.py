@@ -11,8 +11,8 @@ import numpy as np
 
 from ..errors import CertificateError, ConfigError
 from ..results import DesignResult
-from ..stability.fail_safe import passive_rest
 from ..stability.linear import LinearModel
+from ..study.passive_rest import passive_rest
 from ..study.study import Study
 from .certify import certify
 from .check import check_damping, check_decay, check_grid

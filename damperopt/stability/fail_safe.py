@@ -15,27 +15,7 @@ from ..study.study import Study
 from .linear import LinearModel
 from .over_damping import worst_over_damping
 
-__all__ = ["FailSafe", "passive_rest"]
-
-
-def passive_rest(study: Study) -> Study | None:
-    """The study without its actuator, with the margin that it must keep then; None where it has none.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    Study or None
-    """
-    if study.damper.actuator is None:
-        return None
-    bare = study.without_control()
-    if study.requirements is None:
-        return bare
-    changes = {"stability_margin": study.fail_safe_margin, "fail_safe_margin": None, "decay": None, "damping_ratio": None}
-    return bare.replace(requirements=bare.required.model_copy(update=changes | {"limit_event": "torque"}).model_dump())
+__all__ = ["FailSafe"]
 
 
 class FailSafe:

@@ -15,9 +15,9 @@ from table_gear import CARCASS, eigenvalues, table_gear
 
 from damperopt import CertificateError, ConfigError, certify, loads, optimise, simulate, simulate_exactly
 from damperopt.proof.yaw import YawGear
-from damperopt.stability.fail_safe import passive_rest
 from damperopt.stability.gain_schedule import gain_schedule
 from damperopt.stability.linear import linear_gear
+from damperopt.study.passive_rest import passive_rest
 
 F_Z, TAU = 150e3, 4e-3
 GAINS = {

@@ -19,9 +19,9 @@ def verify(
 ) -> None:
     """Check everything that a run of 'optimise' claims again, from its files alone.
 
-    Checksums, the study, the proofs of stability (with an actuator, and with it off), mass and requirements, decay, and the lower
-    bound on the mass from the root of its tree. All else, such as prices and margins of safety, by its checksum alone. Exit code
-    0: all of it holds; 2: no run; 4: something does not hold.
+    Checksums, the study, the proofs of stability (with an actuator, and with it off), mass and requirements, decay, and the
+    lower bound on the mass from the root of its tree. All else, such as prices and margins of safety, by its checksum alone.
+    Exit code 0: all of it holds; 2: no run; 4: something does not hold.
     """
     with all_or_nothing():
         held = _checked(run)

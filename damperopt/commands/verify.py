@@ -17,7 +17,7 @@ __all__ = ["verify"]
 def verify(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run of 'optimise'.")],
 ) -> None:
-    """Check everything that a run of 'optimise' claims again, from its files alone.
+    """Check proofs, mass, requirements and bound of a run of 'optimise' again, from its files alone.
 
     Checksums, the study, the proofs of stability (with an actuator, and with it off), mass and requirements, decay, and the
     lower bound on the mass from the root of its tree. All else, such as prices and margins of safety, by its checksum alone.

@@ -87,7 +87,7 @@ BROKEN = {
     "linear orifice": (PLANAR, f"orifice: {{coefficient: 1 N s/m}}\n  {PLANAR}", "damper.orifice.coefficient", "dimension"),
     "negative compliance": (PLANAR, f"series_stiffness: -1\n  {PLANAR}", "damper.series_stiffness", "-1 is out of range"),
     "rotational links": ("topology: arreaza", f"{ROTATIONAL}link_stiffness: 1 MN/m", "damper.link_stiffness", "another kind"),
-    "rotational gap": ("topology: arreaza", f"{ROTATIONAL}freeplay: {{gap: 1 mm}}", "damper.freeplay", "another kind"),
+    "rotational gap": ("topology: arreaza", f"{ROTATIONAL}freeplay: {{gap: 1 mm}}", "damper.freeplay.gap", "another dimension"),
     "geometry": ("geometry: planar", "geometry: spacial", "damper.geometry", "'published', 'planar' or 'spatial'"),
     "no friction": (RADIUS, f"friction: {{torque: 0}}\n  {RADIUS}", "gear.friction.torque", "0 is out of range"),
     "friction force": (RADIUS, f"friction: {{torque: 1 N}}\n  {RADIUS}", "gear.friction.torque", "another dimension"),

@@ -24,6 +24,8 @@ from damperopt.study.solver import Solver
 pytestmark = pytest.mark.slow
 
 FILES = {
+    "SHA256SUMS",
+    "bound.json",
     "chart.png",
     "chart.svg",
     "config.yaml",

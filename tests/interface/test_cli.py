@@ -132,7 +132,7 @@ def test_infeasible_says_what_is_missing_and_what_would_help(configs, tmp_path, 
     # the wheel reaches 0.35 m and 50 mm above it are asked for, the lugs allow 0.3 m
     assert "tyre_clearance can reach -0.05 m, required 0.05" in done.out
     assert "lug_distance_max of 0.8 m instead of 0.6" in done.out
-    assert {f.name for f in (tmp_path / "out").iterdir()} == {"result.json", "config.yaml", "report.html"}
+    assert {f.name for f in (tmp_path / "out").iterdir()} == {"result.json", "config.yaml", "report.html", "SHA256SUMS"}
 
 
 @pytest.mark.parametrize(

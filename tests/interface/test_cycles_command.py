@@ -23,7 +23,7 @@ def test_branch_of_the_nose_gear_in_files_and_words(call, configs, tmp_path):
     over = "torsional_damping=50:400"
     said = call("cycles", study, "--over", over, "--speed", "93.40291508693824", "--load", "150 kN", "-o", folder)
     assert said.code == 0, said.err
-    assert {path.name for path in folder.iterdir()} == FILES
+    assert {path.name for path in folder.iterdir()} == FILES, said.err
     record = json.loads((folder / "cycles.json").read_text())
     assert record["question"]["over"] == "damper.torsional_damping"
     (branch,) = record["branches"]

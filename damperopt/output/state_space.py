@@ -73,7 +73,7 @@ def _arrays(record: StateSpace) -> dict[str, Any]:
 
 def _write_npz(path: Path, arrays: dict[str, Any]) -> None:
     with open(path, "wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **{name: np.array(value) for name, value in arrays.items()})  # type: ignore[arg-type]
+        np.savez_compressed(file, allow_pickle=False, **{name: np.array(value) for name, value in arrays.items()})
 
 
 def _write_mat(path: Path, arrays: dict[str, Any]) -> None:

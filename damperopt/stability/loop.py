@@ -24,7 +24,7 @@ from .gear import LinearGear
 from .linear import LinearModel
 from .response import Structure
 
-__all__ = ["BREAKS", "Break", "Loop", "opened"]
+__all__ = ["BREAKS", "Loop", "opened"]
 
 Break = Literal["tyre", "damper"]
 BREAKS: tuple[Break, ...] = ("tyre", "damper")

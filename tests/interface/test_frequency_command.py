@@ -67,6 +67,24 @@ def test_exported_matrices_are_the_gear(call, study, tmp_path, suffix):
     assert "exists already" in again.err
 
 
+def test_exported_delay_is_exact(call, study, tmp_path):
+    """Roots of the twin by collocation are eigenvalues of A(lambda), put together as the page of the documentation says."""
+    path = tmp_path / "gear.npz"
+    assert call("export", study, "--to", path, "--speeds", "8:8:1").code == 0
+    with np.load(path) as file:
+        A_0, b, delay = (file[f"delay_{name}"][0, 0] for name in ("A_0", "b", "s"))
+        line = dict(zip(file["delay_footprint_names"].tolist(), file["delay_footprint"][0, 0, 0], strict=True))
+    for root in rightmost(8.0, F_Z, gear(O), count=4):
+        z = root * delay[0]
+        E = np.exp(-z)
+        phi1 = (1 - E) / z
+        chi = (1 + E) / z - 2 * phi1 / z
+        A = A_0.astype(complex)
+        for k, (name, last) in enumerate((("force", phi1), ("moment", chi))):
+            A[:, -1] += b[:, k] * sum(line[f"{name}[{i}]"] * part for i, part in enumerate((1, E, last)))
+        assert np.abs(np.linalg.eigvals(A) - root).min() < 1e-8 * abs(root)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

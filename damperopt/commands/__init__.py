@@ -5,6 +5,8 @@ from .breakout import breakout
 from .chart import chart
 from .components import components
 from .cycles import cycles
+from .export import export
+from .frequency import frequency
 from .gains import gains
 from .optimise import optimise
 from .report import report
@@ -21,6 +23,8 @@ __all__ = [
     "chart",
     "components",
     "cycles",
+    "export",
+    "frequency",
     "gains",
     "init",
     "optimise",

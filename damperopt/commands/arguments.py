@@ -11,12 +11,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from ..charts.plane import quantity_name, unit_of_quantity
 from ..errors import ConfigError
+from ..quantities.record import Speed
 from ..quantities.units import Quantity, number
 from ..reading import quoted
 from ..study.disturbances import Disturbance
 from ..study.study import Study
 
-__all__ = ["axis_range", "choices", "disturbance_of", "quantity", "speed_grid", "values_of"]
+__all__ = ["axis_range", "choices", "disturbance_of", "quantity", "speed_grid", "speeds_of", "values_of"]
 
 FASTEST = 1e4
 """Largest speed of a table [m/s]."""
@@ -126,6 +127,16 @@ def speed_grid(text: str, study: Study) -> np.ndarray:
         raise ConfigError(f"--speeds: found {quoted(text)}; allowed: {allowed}")
     count = int(np.floor((high - low) / step * (1 + 1e-12))) + 1
     return low + step * np.arange(count)
+
+
+def speeds_of(text: str, option: str, most: int) -> list[float]:
+    """Speeds [m/s] of a comma list such as ``5,120kt``: ascending, each once."""
+    found = sorted({quantity(part.strip(), Speed, option) for part in text.split(",")})
+    if len(found) > most or found[-1] > FASTEST:
+        raise ConfigError(
+            f"{option}: found {quoted(text)}; allowed: at most {most} speeds up to {FASTEST:g} m/s, such as 5,120kt"
+        )
+    return found
 
 
 def axis_range(text: str, study: Study, option: str) -> tuple[str, float, float]:

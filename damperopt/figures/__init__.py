@@ -9,6 +9,8 @@ _HOME = {
     "cycle_map": "cycles",
     "cycles": "cycles",
     "decay": "motion",
+    "loop_loci": "loop",
+    "loop_margins": "loop",
     "mass_by_part": "design",
     "modes_before_after": "modes",
     "modes_over_speed": "modes",

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..errors import ConfigError
 from ..study.study import Study
-from .delay import DelayGear
+from .delay import LENGTH, DelayGear
 from .gear import LinearGear
 from .linear import LinearModel
 from .response import Structure
@@ -53,6 +53,8 @@ class Loop:
         Eigenvalues [1/s] with the loop open and closed; the rightmost ones where there is a delay.
     degree : int
         Power of s with which det(1 + L) grows.
+    delay: float
+        Of the longest contact line [s]; 0: none.
     """
 
     speed: float
@@ -61,6 +63,7 @@ class Loop:
     open_poles: np.ndarray
     closed_poles: np.ndarray
     degree: int = 0
+    delay: float = 0.0
 
 
 def opened(study: Study, design: Mapping[str, float], where: Break) -> Callable[[float, float], Loop]:
@@ -95,6 +98,12 @@ def _matrix(gear: LinearGear, V: float, F_z: float) -> Callable[[np.ndarray], np
     return lambda s: np.broadcast_to(A, (len(s), *A.shape))
 
 
+def _delay(gear: LinearGear, V: float, F_z: float) -> float:
+    if not isinstance(gear, DelayGear):
+        return 0.0
+    return float(gear.frozen(np.array([V]), np.array([F_z])).numbers[:, :, LENGTH].max() / V)
+
+
 def _at_tyre(study: Study, design: Mapping[str, float]) -> Callable[[float, float], Loop]:
     model = LinearModel(study)
     structure = model.structure or Structure(study)
@@ -121,7 +130,9 @@ def _at_tyre(study: Study, design: Mapping[str, float]) -> Callable[[float, floa
             moved = np.linalg.solve(s[:, None, None] * np.eye(n) - A_open, B.astype(complex))
             return np.asarray(-forces @ moved)
 
-        return Loop(V, F_z, response, np.linalg.eigvals(A_open).astype(complex), gear.roots(V, F_z)[0])
+        return Loop(
+            V, F_z, response, np.linalg.eigvals(A_open).astype(complex), gear.roots(V, F_z)[0], delay=_delay(gear, V, F_z)
+        )
 
     return at
 
@@ -143,7 +154,9 @@ def _at_damper(study: Study, design: Mapping[str, float]) -> Callable[[float, fl
             without = 2 * 0.5**nodes * polynomial(s, 0.5) - whole
             return np.asarray(whole / without - 1)[:, None, None]
 
-        return Loop(V, F_z, response, gears[0.0].roots(V, F_z)[0], gears[1.0].roots(V, F_z)[0], nodes)
+        return Loop(
+            V, F_z, response, gears[0.0].roots(V, F_z)[0], gears[1.0].roots(V, F_z)[0], nodes, _delay(gears[1.0], V, F_z)
+        )
 
     return at
 

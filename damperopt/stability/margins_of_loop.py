@@ -16,7 +16,7 @@ from itertools import permutations
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from ..errors import DamperoptError
+from ..errors import ConfigError, DamperoptError
 from ..quantities.shown import written
 from .loop import Loop
 
@@ -33,6 +33,9 @@ TURN, ROUNDS = np.pi / 8, 12
 
 ON_THE_LINE, SHIFT = 1e-9, 1e-6
 """Open poles that near the imaginary axis, in parts of the fastest pole, and how far right of it the contour passes then."""
+
+FURTHER, MOST_WAVES = 3, 20_000
+"""How far beyond the fastest pole a delay is resolved, and by how many frequencies at most."""
 
 LEAST, MOST = 1e-6, 1e6
 """Factors that count: beyond, a locus is 0 or infinite within rounding."""
@@ -138,7 +141,7 @@ def locus_of(loop: Loop) -> Locus:
         L = loop.response(shift + 1j * w)
         return np.linalg.eigvals(L), np.linalg.det(np.eye(L.shape[1]) + L)
 
-    w = _frequencies(poles - shift, fastest)
+    w = np.unique(np.concatenate([_frequencies(poles - shift, fastest), _of_delay(loop, fastest)]))
     loci, difference = at(w)
     for _ in range(ROUNDS):
         wide = np.flatnonzero(np.abs(np.angle(difference[1:] / difference[:-1])) > TURN)
@@ -167,6 +170,17 @@ def _frequencies(poles: np.ndarray, fastest: float) -> np.ndarray:
     row = np.geomspace(slowest * 10.0**-DECADES, fastest * 10.0**DECADES, count)
     about = (np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * ABOUT_A_POLE).ravel()
     return np.unique(np.concatenate([[0.0], row, about[(about > 0) & (about < row[-1])]]))
+
+
+def _of_delay(loop: Loop, fastest: float) -> np.ndarray:
+    """Frequencies between which exp(-s delay) turns little, beyond the fastest pole."""
+    count = FURTHER * fastest * loop.delay / TURN
+    if count > MOST_WAVES:
+        least = written(loop.speed * count / MOST_WAVES)
+        raise ConfigError(
+            f"loop at {written(loop.speed)}: the tyre remembers too many waves; allowed: speeds from about {least}"
+        )
+    return np.arange(1, int(count) + 1) * TURN / max(loop.delay, 1e-300)
 
 
 def _in_order(loci: np.ndarray) -> np.ndarray:

@@ -118,7 +118,9 @@ def test_count_that_disagrees_gives_no_margin():
         margins_of(loop)
 
 
-def test_what_cannot_be_opened_is_refused():
+def test_what_cannot_be_opened_is_refused(loops):
+    with pytest.raises(ConfigError, match="allowed: speeds from about"):
+        locus_of(loops["memory", "tyre"](0.001, F_Z))
     study = loads(study_text(gear(O), contact="leading_point"))
     undamped = study.replace(damper__torsional_damping=0.0)
     with pytest.raises(ConfigError, match=r"--break: found 'damper', but damper.kind 'torsional'"):

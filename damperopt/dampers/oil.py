@@ -15,7 +15,7 @@ from ..quantities.temperature import ZERO_CELSIUS, Temperature, TemperatureRange
 from ..quantities.units import Quantity
 from .base import Damper
 
-__all__ = ["SHOWN", "Oil", "Oiled", "damping_factor", "orifice_area"]
+__all__ = ["SHOWN", "VAPOUR_PRESSURE", "Oil", "Oiled", "damping_factor", "orifice_area"]
 
 SHOWN = tuple(ZERO_CELSIUS + celsius for celsius in (-54.0, 20.0, 70.0))
 """Temperatures at which damping is reported [K]."""
@@ -115,6 +115,10 @@ def damping_factor(oil: Oil | None, temperature: Expr = None) -> Expr:
     return 1 if oil is None else oil.factor(temperature)
 
 
+VAPOUR_PRESSURE = 1e3
+"""Of hydraulic oil, absolute; typical [Pa]."""
+
+
 class Oiled(Damper):
     """What dampers with oil have in common: its temperature, and an interval of dampings that the requirements survive."""
 
@@ -125,8 +129,8 @@ class Oiled(Damper):
 
     charge_pressure: Pressure | None = None
     """Of both chambers at rest, absolute, by which cavitation is judged [Pa]; left out: it is not looked at."""
-    vapour_pressure: Annotated[float, Quantity("Pa", at_least=0, example="1 kPa")] = 1e3
-    """Of the oil, absolute, below which it boils; typical [Pa]."""
+    vapour_pressure: Annotated[float, Quantity("Pa", at_least=0, example="1 kPa")] | None = None
+    """Of the oil, absolute, below which it boils [Pa]; left out: 1 kPa, which is typical."""
 
     @model_validator(mode="after")
     def _uncertain(self) -> Self:

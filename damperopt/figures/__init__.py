@@ -6,8 +6,8 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
-    "cycle_map": "cycles",
-    "cycles": "cycles",
+    "cycle_map": "limit_cycles",
+    "cycles": "limit_cycles",
     "decay": "motion",
     "loop_loci": "loop",
     "loop_margins": "loop",
@@ -20,7 +20,7 @@ _HOME = {
     "save_each": "style",
     "styled": "style",
     "sweep_figure": "sweep",
-    "threshold": "cycles",
+    "threshold": "limit_cycles",
     "tornado": "design",
     "roll": "motion",
     "trajectory": "motion",

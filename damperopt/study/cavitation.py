@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from ..dampers.oil import VAPOUR_PRESSURE
 from ..linkages.elastic import elastic_linkage
 from ..strength.limit_event import limit_event
 from .study import Study
@@ -64,9 +65,10 @@ def cavitation(study: Study, design: Mapping[str, float], force: float | None = 
         return ""
     area = float(event.damper_force) / study.mass.working_pressure if area is None else float(area)
     left = suction_pressure(charge, force, area)
-    if left >= damper.vapour_pressure:
+    boils = VAPOUR_PRESSURE if damper.vapour_pressure is None else damper.vapour_pressure
+    if left >= boils:
         return ""
-    rotary, needed = damper.ROTARY, damper.vapour_pressure + force / (2 * area)
+    rotary, needed = damper.ROTARY, boils + force / (2 * area)
     what = f"{force / 1e3:.3g} {'kN m' if rotary else 'kN'}"
     return (
         f"damper.charge_pressure: at {what} the suction side would be at {left / 1e6:.3g} MPa, below the vapour pressure: the "

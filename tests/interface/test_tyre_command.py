@@ -145,7 +145,7 @@ def test_curves_leave_out_loads_without_data():
     ("arguments", "says"),
     [
         ((), "tyre: found neither; allowed: a study or a property file, or --size"),
-        (("--size", "49x17"), "tyre: found neither"),
+        (("--size", "49x17"), "--size: found no --type"),
         (("--size", "49x17", "--type", "VII"), "--size: found no --rated-pressure"),
         (("--size", "49x17", "--type", "IX", "--rated-pressure", "170psi"), "tyre.type: "),
         (("--size", "46x17R20", "--type", "VII", "--rated-pressure", "170psi"), "tyre.size: '46x17R20' is a radial tyre"),

@@ -82,6 +82,7 @@ IRRATIONAL_OPERATIONS = {
     "sqrt": (ca.sqrt(x), "sqrt", (0.3, 2.0, 1e-9, 1e300)),
     "exp": (ca.exp(x), "exp", (0.3, -2.0, 1e-9, 22.0)),
     "log": (ca.log(x), "log", (0.3, 2.0, 1e-9, 1e300)),
+    "asinh": (ca.asinh(x), "asinh", (0.3, -2.0, 1e-9, 1e12)),
 }
 
 

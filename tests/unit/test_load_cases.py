@@ -232,7 +232,7 @@ def test_numbers_of_a_study_enter_as_symbols(main_gear):
 
 def test_two_wheels_share_the_load(main_gear):
     axle = SimpleNamespace(half_track=0.2)
-    wheels = [SimpleNamespace(load=75e3)] * 2
+    wheels = [SimpleNamespace(load=75e3, pressure=None)] * 2
     gear = SimpleNamespace(
         axle=axle, states=lambda: (), wheels=lambda x, speed, load: wheels, wheel_radius=0.4, lever=lambda: 0.12
     )

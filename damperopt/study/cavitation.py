@@ -32,8 +32,8 @@ def suction_pressure(charge: float, force: float, area: float) -> float:
 
     Examples
     --------
-    >>> suction_pressure(1.0e6, 2.4e3, 6e-4)
-    -1000000.0
+    >>> round(suction_pressure(1.0e6, 2.4e3, 6e-4))
+    -1000000
     """
     return charge - force / (2 * area)
 

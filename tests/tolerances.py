@@ -60,7 +60,7 @@ DYNAMIC_STIFFNESS = 1e-11
 """Relative; receptance by one solution of the linear model, less the inertia of the gear (measured: below 1e-12)."""
 
 SENSITIVITY = 2e-8
-"""Of the largest value; sensitivities at a tolerance of 1e-10 against fourth-order differences of solutions at 1e-11
+"""Of the largest value; sensitivities at a tolerance of 1e-10 against fourth-order differences of solutions at 1e-11 or 1e-12
 (measured: 4e-9)."""
 
 LINEAR_RESPONSE = 1e-6

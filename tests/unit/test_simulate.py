@@ -161,8 +161,8 @@ def test_sensitivities_of_the_spatial_linkage_are_differences_of_its_motions(stu
     design = np.array([DESIGN[name] for name in dae.design_names])
     made = Integrator(dae, data_values(gear), 10, engine, 1e-10, sensitivities=True, compiled=False)
     found = made(np.array(START), design, SPEED, LOAD, SHORT).sensitivities
-    plain = Integrator(dae, data_values(gear), 10, "cvodes", 1e-11, compiled=False)
-    h = 5e-4
+    plain = Integrator(dae, data_values(gear), 10, "cvodes", 1e-12, compiled=False)
+    h = 1e-3
     for i, name in enumerate(dae.design_names):
         unit = np.eye(len(design))[i]
         ends = {k: plain(np.array(START), design * np.exp(k * h * unit), SPEED, LOAD, SHORT).x[:, -1] for k in (-2, -1, 1, 2)}

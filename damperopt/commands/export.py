@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from ..errors import ConfigError
@@ -34,6 +33,8 @@ def export(
     ] = None,
 ) -> None:
     """State-space matrices over speeds and loads with names and units; with a delay, its data beside a rational twin."""
+    import numpy as np
+
     from ..output.state_space import FORMATS, write_state_space
     from ..stability.state_space import state_space
     from .arguments import speed_grid
@@ -69,6 +70,8 @@ def _show(record: StateSpace, to: Path) -> None:
     out.print(f"Contact line {record.contact}.", soft_wrap=True, markup=False)
     if record.delay is not None:
         error = record.delay.field_error
+        import numpy as np
+
         i, j = np.unravel_index(int(error.argmax()), error.shape)
         where = f"{record.speeds[i]:.5g} m/s, {record.loads[j] / 1e3:.6g} kN"
         words = f"Its eigenvalues miss the exact ones by {error[i, j]:.2g} at most, relative (at {where}); delay_... are exact."

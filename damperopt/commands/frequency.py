@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from ..errors import ConfigError
@@ -54,6 +53,8 @@ def frequency(
         at = opened(study, study.start if values is None else values, where)
         folder = run_folder(output, f"{file.stem}-loop")
         low, high = study.envelope.speed.min, study.envelope.speed.max
+        import numpy as np
+
         row = np.unique(np.clip(np.concatenate([np.linspace(low, high, SPEEDS), np.geomspace(low, high, SPEEDS)]), low, high))
         over = margins_over_speed(at, row, F_z)
         loops = {V: at(V, F_z) for V in asked or [float(over.speeds[over.weakest])]}

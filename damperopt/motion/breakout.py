@@ -135,20 +135,20 @@ def least_breakout(
         return _rests(simulator(torque), speed, load, disturbance, duration)
 
     torque, decides = max(at_least, _given(study) * SMALLEST), float(speeds[0])
-    ahead = np.asarray(speeds, float).tolist()
-    while ahead:
-        speed = ahead.pop(0)
-        if rests(torque, speed):
-            continue
-        low, high = torque, 2 * torque
-        doubled = 1
-        while not rests(high, speed):
-            low, high, doubled = high, 2 * high, doubled + 1
-            if doubled > DOUBLINGS:
-                return Breakout(None, speed)
-        while high > CLOSE * low:
-            middle = float(np.sqrt(low * high))
-            low, high = (low, middle) if rests(middle, speed) else (middle, high)
-        torque, decides = high, speed
-        ahead = [other for other in np.asarray(speeds, float).tolist() if other != speed]  # all the others anew
+    row, before = np.asarray(speeds, float).tolist(), None
+    while torque != before:  # at last every speed is looked at with what was found
+        before = torque
+        for speed in row:
+            if rests(torque, speed):
+                continue
+            low, high = torque, 2 * torque
+            doubled = 1
+            while not rests(high, speed):
+                low, high, doubled = high, 2 * high, doubled + 1
+                if doubled > DOUBLINGS:
+                    return Breakout(None, speed)
+            while high > CLOSE * low:
+                middle = float(np.sqrt(low * high))
+                low, high = (low, middle) if rests(middle, speed) else (middle, high)
+            torque, decides = high, speed
     return Breakout(torque, decides)

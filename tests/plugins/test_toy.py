@@ -72,15 +72,13 @@ def test_goes_through_every_command(toy, commands, tmp_path, name):
 
 
 @pytest.mark.slow
-def test_no_polynomial_in_the_load_is_not_proved_over_a_range(toy, commands, tmp_path):
+def test_no_polynomial_in_the_load_is_proved_over_a_range_in_slices(toy, commands, tmp_path):
     text = Path(study("quintic")).read_text()
     (tmp_path / "range.yaml").write_text(text.replace("[30 kN, 40 kN]", "{min: 30 kN, max: 40 kN}"))
     over_range, listed = commands(toy, "analyse range.yaml -o range", f"analyse {study('quintic')} -o list")
     assert over_range["code"] == listed["code"] == 0, (over_range, listed)
-    assert "not proved" in over_range["out"]
-    assert "list of loads" in over_range["out"]
-    assert "not met" not in over_range["out"]
-    assert "stable: proved over the whole envelope" in listed["out"]
+    for done in (over_range, listed):
+        assert "stable: proved over the whole envelope" in done["out"], done["out"]
 
 
 @pytest.mark.slow

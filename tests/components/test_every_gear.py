@@ -88,7 +88,7 @@ def test_is_optimised(study, tmp_path):
     is_optimised(study, tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.verify
 @pytest.mark.parametrize("study", least(BLOCKS), indirect=True)
 def test_is_reported(study, tmp_path):
     is_reported(study, tmp_path)

@@ -35,7 +35,7 @@ def test_damping_in_the_steering_has_an_upper_limit(study):
     assert worst(study, result.design, 30e3)[0] == pytest.approx(-1.0, abs=0.01)
 
 
-@pytest.mark.slow
+@pytest.mark.verify
 @pytest.mark.parametrize("study", ["main_gear_twin"], indirect=True)
 def test_a_common_axle_needs_hardly_a_damper(study):
     whole = damperopt.optimise(study)

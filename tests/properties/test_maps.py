@@ -54,7 +54,7 @@ def test_maps_of_every_geometry(main_gear, geometry):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["tr_r64", "magic_formula"])
+@pytest.mark.parametrize("law", ["tr_r64", pytest.param("magic_formula", marks=pytest.mark.verify)])
 def test_maps_of_tyres_that_change_with_the_load(configs, law):
     """Their graphs hold comparisons, roots, sines and arctangents of the load."""
     name = {"tr_r64": "nose_gear_tr_r64", "magic_formula": "main_gear_property_file"}[law]

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ..dynamics import build
+from ..expressions.buffered import Buffered
 from ..expressions.dae import DAE
 from ..study.study import Study
 from ..symbols import data_values, symbolic
@@ -148,22 +149,14 @@ class _Stacked:
 
     def __init__(self, function: ca.Function, varied: int):
         self._function, self._varied = function, varied
-        self._kept: dict[int, tuple] = {}
+        self._kept: dict[int, Buffered] = {}
 
     def __call__(self, k: int, rows: list[np.ndarray], shared: list[np.ndarray]) -> list[np.ndarray]:
         """Outputs as flat arrays, point after point, column by column."""
         if k not in self._kept:
-            mapped = self._function.map("stacked", "serial", k, list(range(self._varied, self._function.n_in())), [])
-            buffer, evaluate = mapped.buffer()
-            given = [np.zeros(mapped.nnz_in(i)) for i in range(mapped.n_in())]
-            found = [np.zeros(mapped.nnz_out(i)) for i in range(mapped.n_out())]
-            for i, array in enumerate(given):
-                buffer.set_arg(i, memoryview(array))  # type: ignore[arg-type, call-arg]  # CasADi's stub lacks memoryviews
-            for i, array in enumerate(found):
-                buffer.set_res(i, memoryview(array))  # type: ignore[arg-type, call-arg]  # as above
-            self._kept[k] = mapped, buffer, evaluate, given, found
-        *_, evaluate, given, found = self._kept[k]
-        for array, values in zip(given, [*rows, *shared], strict=True):
+            others = list(range(self._varied, self._function.n_in()))
+            self._kept[k] = Buffered(self._function.map("stacked", "serial", k, others, []))
+        at = self._kept[k]
+        for array, values in zip(at.given, [*rows, *shared], strict=True):
             array[:] = values.ravel()
-        evaluate()
-        return [array.copy() for array in found]
+        return [array.copy() for array in at()]
